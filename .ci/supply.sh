@@ -13,9 +13,9 @@ check() { # check PACKAGE FEATURES...: without the default features, with each o
     echo "$package with '$features'"
   done
 }
-check hairis ''
+check hairis '' serde
 check hairis-reference ''
-check hairis-variants '' any
+check hairis-variants '' any serde any,serde
 check hairis-instruments '' parquet png parquet,png
 check hairis-harness '' parquet png parquet,png
 

@@ -221,7 +221,7 @@ mod x86 {
     }
 
     fn bsdf<B: Bell>(level: Level, bell: B, inputs: &Inputs) -> (Bsdf<Published<B>>, Constants) {
-        let (params, wo) = (HairParams::default(), inputs.wo[0]);
+        let (params, wo) = (HairParams::bright(), inputs.wo[0]);
         (
             Material::new(&Published(bell), &params)
                 .with_level(level)
@@ -367,7 +367,7 @@ mod x86 {
 
     /// Slices of hits, each with a `wo` of its own, beside slices of the published model at one hit: the columns of a path tracer.
     fn hits<M: Model<Params = HairParams>>(run: Run<'_>, model: &M, inputs: &Inputs) {
-        let (level, params) = (run.level, HairParams::default());
+        let (level, params) = (run.level, HairParams::bright());
         let material = Material::new(model, &params).with_level(level);
         let one = Material::new(&Published(Gaussian), &params)
             .with_level(level)

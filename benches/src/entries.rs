@@ -224,11 +224,11 @@ impl<M: Formulas> Of<'_, M> {
 
     /// The formulas for the default parameters, seen from `wo`.
     fn reference(wo: [f32; 3]) -> M::Point<f32> {
-        M::point(&M::formulas(&M::Params::default()), wo, 0.0)
+        M::point(&M::formulas(&M::Params::PRESETS[0].1), wo, 0.0)
     }
 
     fn material(&self) -> Material<M> {
-        Material::new(&M::MODEL, &M::Params::default())
+        Material::new(&M::MODEL, &M::Params::PRESETS[0].1)
     }
 
     fn mixed(&self) -> Material8<M> {
@@ -250,7 +250,7 @@ impl<M: Formulas> Of<'_, M> {
     /// The query at [`bsdf`](Self::bsdf).
     fn at_one(&self, given: Given) -> Asked {
         Asked {
-            values: M::Params::default().values(),
+            values: M::Params::PRESETS[0].1.values(),
             wo: self.inputs.wo[0],
             given,
         }
@@ -268,7 +268,7 @@ impl<M: Formulas> Of<'_, M> {
     /// The query at a shading point of its own, on one material.
     fn shared(&self, i: usize, given: Given) -> Asked {
         Asked {
-            values: M::Params::default().values(),
+            values: M::Params::PRESETS[0].1.values(),
             wo: self.inputs.wo[i],
             given,
         }
@@ -288,7 +288,7 @@ impl<M: Formulas> Of<'_, M> {
         let shared = |i| self.shared(i, Given::Wi(PROBE));
         let mixed = |i| self.mixed_hair(i, Given::Wi(PROBE));
         self.show(visitor, REFERENCE, "scalar", shared, || {
-            let formulas = M::formulas::<f32>(&M::Params::default());
+            let formulas = M::formulas::<f32>(&M::Params::PRESETS[0].1);
             Each::new(1, arrays(&inputs.wo), move |wo| {
                 Point(M::point(&formulas, *wo, 0.0), PhantomData)
             })
@@ -455,7 +455,7 @@ impl<M: Formulas> Of<'_, M> {
         };
         let eight = |i| self.mixed_hair(i, Given::Xi(inputs.xi[8 * (samples - 1) + i % 8]));
         self.show(visitor, REFERENCE, "scalar", scalar, || {
-            let (formulas, xi) = (M::formulas::<f32>(&M::Params::default()), xi.to_vec());
+            let (formulas, xi) = (M::formulas::<f32>(&M::Params::PRESETS[0].1), xi.to_vec());
             Each::new(samples, arrays(&inputs.wo), move |wo| {
                 let reference = M::point(&formulas, *wo, 0.0);
                 last(&xi, |xi| reference.sample(*xi))

@@ -211,7 +211,7 @@ mod tests {
     use crate::subject::ModelKind;
     use hairis_instruments::direction::fibre_direction;
     use hairis_instruments::quadrature::{SphereIntegrator, Tolerance};
-    use hairis_reference::{HairReference, Parameters, Reference};
+    use hairis_reference::{HairReference, Reference};
 
     #[test]
     fn the_best_factors_are_the_best_in_their_norm() {
@@ -257,7 +257,7 @@ mod tests {
             .as_dvec3()
             .to_array();
         let [gaussian, cauchy] = ModelKind::ALL.map(|model| {
-            HairReference::<f64>::prepare(&Parameters::from(&params), model.shape(), wo)
+            HairReference::<f64>::prepare(&params.desc().map(f64::from), model.shape(), wo)
         });
         let scale = found.albedo_gaussian / found.albedo_cauchy;
         let desc = params.desc();
@@ -266,9 +266,9 @@ mod tests {
             ..Tolerance::relative(1e-5)
         });
         for (alpha, beta) in [
-            (desc.alpha_r, desc.beta_r),
-            (desc.alpha_tt, desc.beta_tt),
-            (desc.alpha_trt, desc.beta_trt),
+            (desc.alpha[0], desc.beta[0]),
+            (desc.alpha[1], desc.beta[1]),
+            (desc.alpha[2], desc.beta[2]),
         ] {
             sphere = sphere.theta_lobe(f64::from(2.0 * alpha) - theta_o, f64::from(2.0 * beta));
         }

@@ -198,7 +198,7 @@ impl<'a> EfficiencyConfig<'a> {
             seed,
             budget: Budget::new(quick),
             environment,
-            params: HairParams::default(),
+            params: HairParams::bright(),
             costs: None,
         }
     }
@@ -211,9 +211,7 @@ impl<'a> EfficiencyConfig<'a> {
 pub(crate) fn with_beta(base: &HairParams, beta_r_deg: f32) -> Result<HairParams, ParamError> {
     let beta_r = beta_r_deg.to_radians();
     HairParams::new(&HairDesc {
-        beta_r,
-        beta_tt: 0.5 * beta_r,
-        beta_trt: 2.0 * beta_r,
+        beta: [beta_r, 0.5 * beta_r, 2.0 * beta_r],
         ..*base.desc()
     })
 }

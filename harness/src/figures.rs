@@ -144,7 +144,6 @@ pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: &[[f32; 3]]) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hairis::params::HairDesc;
     use hairis_instruments::markup::well_formed;
     use hairis_instruments::plot::{Bar, bars, heat_map};
     use hairis_instruments::report::{Report, Section};
@@ -152,7 +151,7 @@ mod tests {
     use hairis_variants::Cauchy;
 
     fn default_hair() -> HairParams {
-        HairParams::new(&HairDesc::default()).expect("the default is legal")
+        HairParams::new(&*HairParams::bright().desc()).expect("the default is legal")
     }
 
     fn halton(n: u32) -> Vec<[f32; 3]> {

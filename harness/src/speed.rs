@@ -167,7 +167,7 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
 fn draw(model: ModelId, seed: u64) -> TimedInputs {
     let (mut from, default) = (
         Independent::new(seed, stream_id(&[0x5eed])),
-        model.defaults(),
+        model.measured(),
     );
     let mut params = [default; 8];
     params[1..].fill_with(|| random(default, &mut from));

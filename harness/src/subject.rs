@@ -119,7 +119,7 @@ pub(crate) fn values_json(values: &Values) -> serde_json::Value {
 ///
 /// Never: every range lies within those accepted.
 pub fn random_hair(xi: &mut Independent) -> Result<HairParams, ParamError> {
-    HairParams::from_values(&random(HairParams::default().values(), xi))
+    HairParams::from_values(&random(HairParams::bright().values(), xi))
 }
 
 #[cfg(test)]

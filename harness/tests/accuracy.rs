@@ -6,7 +6,7 @@ use core::fmt::Write as _;
 use glam::Vec3;
 use hairis::simd::Level;
 use hairis::{HairParams, Vec3x8};
-use hairis_reference::{HairReference, Parameters, Reference, Shape};
+use hairis_reference::{HairReference, Reference, Shape};
 use hairis_variants::{AnyMaterial, AnyMaterial8, ModelId, Parameters as _};
 
 const CASES: usize = 10_000;
@@ -140,7 +140,7 @@ fn compare(
 /// A Gaussian bell below about 2^-115 is 0 by design: 2^-114 of each lobe's peak is no error of S. Peaks reach 1e7 here,
 /// so that is 1e-27 at most and most often 1e-34, where everyday values are 1.
 fn errors(shape: Shape, case: &Case, (value, pdf): &Answer) -> [f64; 2] {
-    let parameters = Parameters::<f64>::from(&params(case));
+    let parameters = params(case).desc().map(f64::from);
     let double = |w: Vec3| w.as_dvec3().to_array();
     let oracle = HairReference::prepare(&parameters, shape, double(case.wo));
     let expected = oracle.eval(double(case.wi));
@@ -152,8 +152,7 @@ fn errors(shape: Shape, case: &Case, (value, pdf): &Answer) -> [f64; 2] {
     };
     let channel = |c: usize| {
         let p = &parameters;
-        let peaks =
-            p.intensity_r[c] + p.intensity_tt[c] + p.intensity_trt[c] * (1.0 + p.intensity_g);
+        let peaks = p.i_r[c] + p.i_tt[c] + p.i_trt[c] * (1.0 + p.i_g);
         relative(
             value[c],
             expected[c],

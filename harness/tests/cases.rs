@@ -105,11 +105,7 @@ impl Cases {
     /// Random hair, some of whose colours, channels and glints are 0.
     fn desc(&mut self) -> HairDesc {
         let mut desc = *random_hair(&mut self.0).expect("within range").desc();
-        for color in [
-            &mut desc.intensity_r,
-            &mut desc.intensity_tt,
-            &mut desc.intensity_trt,
-        ] {
+        for color in [&mut desc.i_r, &mut desc.i_tt, &mut desc.i_trt] {
             let black = self.chance(0.2);
             for channel in color {
                 if black || self.chance(0.1) {
@@ -118,7 +114,7 @@ impl Cases {
             }
         }
         if self.chance(0.1) {
-            desc.intensity_g = 0.0;
+            desc.i_g = 0.0;
         }
         desc
     }
@@ -132,9 +128,9 @@ impl Cases {
             Region::Sphere => {}
             Region::Peaks => {
                 let (alpha, beta) = [
-                    (desc.alpha_r, desc.beta_r),
-                    (desc.alpha_tt, desc.beta_tt),
-                    (desc.alpha_trt, desc.beta_trt),
+                    (desc.alpha[0], desc.beta[0]),
+                    (desc.alpha[1], desc.beta[1]),
+                    (desc.alpha[2], desc.beta[2]),
                 ][self.0.next_below(3)];
                 let theta_h = f64::from(alpha) + f64::from(beta) * self.between(-4.0, 4.0);
                 let theta_i = (2.0 * theta_h - sin_o.atan2(cos_o)).clamp(-FRAC_PI_2, FRAC_PI_2);

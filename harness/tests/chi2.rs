@@ -11,7 +11,7 @@ use hairis::{Gaussian, HairParams, Lobe, LobeMask, Matched, Material, Sample8};
 use hairis_conformance::statistics::{AngleEdges, ChiSquare, chi_square, ks_statistic};
 use hairis_instruments::sequence::Independent;
 use hairis_instruments::stats::sidak;
-use hairis_reference::{HairReference, MatchedReference, Parameters, Reference, Shape};
+use hairis_reference::{HairReference, MatchedReference, Reference, Shape};
 use hairis_variants::{Cauchy, ModelId, Parameters as _};
 
 const SAMPLES: u32 = 1_000_000;
@@ -28,19 +28,16 @@ const SAMPLERS: usize = 5;
 fn materials() -> [(&'static str, HairParams); 3] {
     let all = |degrees: f32| {
         let width = degrees.to_radians();
-        let (beta_r, beta_tt, beta_trt) = (width, width, width);
         let desc = HairDesc {
-            beta_r,
-            beta_tt,
-            beta_trt,
+            beta: [width; 3],
             gamma_tt: width,
             gamma_g: width,
-            ..HairDesc::default()
+            ..*HairParams::bright().desc()
         };
         HairParams::new(&desc).unwrap()
     };
     [
-        ("default", HairParams::default()),
+        ("default", HairParams::bright()),
         ("narrow", all(0.5)),
         ("wide", all(60.0)),
     ]
@@ -48,18 +45,8 @@ fn materials() -> [(&'static str, HairParams); 3] {
 
 /// The default set with every width times `factor`.
 fn widened(factor: f32) -> HairParams {
-    let d = HairDesc::default();
-    let (beta_r, beta_tt, beta_trt) = (d.beta_r * factor, d.beta_tt * factor, d.beta_trt * factor);
-    let (gamma_tt, gamma_g) = (d.gamma_tt * factor, d.gamma_g * factor);
-    HairParams::new(&HairDesc {
-        beta_r,
-        beta_tt,
-        beta_trt,
-        gamma_tt,
-        gamma_g,
-        ..d
-    })
-    .unwrap()
+    let d = *HairParams::bright().desc();
+    HairParams::new(&d.with_width_factor(factor)).unwrap()
 }
 
 fn wo(degrees: f32) -> Vec3 {
@@ -150,12 +137,14 @@ reference_sampler! { HairReference MatchedReference }
 
 /// The published sampler of a shape.
 fn published(shape: Shape) -> impl Fn(&HairParams, Vec3) -> HairReference<f64> {
-    move |params, wo| HairReference::prepare(&Parameters::from(params), shape, double(wo))
+    move |params, wo| HairReference::prepare(&params.desc().map(f64::from), shape, double(wo))
 }
 
 /// The matched sampler of a shape.
 fn matched(shape: Shape, bands: usize) -> impl Fn(&HairParams, Vec3) -> MatchedReference<f64> {
-    move |params, wo| MatchedReference::prepare(&Parameters::from(params), shape, double(wo), bands)
+    move |params, wo| {
+        MatchedReference::prepare(&params.desc().map(f64::from), shape, double(wo), bands)
+    }
 }
 
 /// Cells in `theta_i` and `phi` that resolve every lobe, and the samples each should hold.
@@ -427,7 +416,7 @@ fn widths_off_by_a_twentieth_are_found() {
     for degrees in [0.0, -80.0] {
         let wo = wo(degrees);
         let reference = HairReference::prepare(
-            &Parameters::from(&HairParams::default()),
+            &HairParams::bright().desc().map(f64::from),
             Shape::Gaussian,
             double(wo),
         );
@@ -454,7 +443,7 @@ fn every_sampler_on_the_line_follows_its_cdf() {
         for degrees in [0.0, 85.0] {
             let wo = wo(degrees);
             let reference =
-                HairReference::prepare(&Parameters::from(&params), Shape::Gaussian, double(wo));
+                HairReference::prepare(&params.desc().map(f64::from), Shape::Gaussian, double(wo));
             for lobe in Lobe::ALL {
                 let mut uniform = [const { Vec::new() }; 2];
                 let stream = 9000 + lobe.index() as u64;

@@ -105,10 +105,10 @@ fn request(model: &str, case: &Case) -> Value {
     json!({
         "model": model,
         "params": {
-            "alpha": three([d.alpha_r, d.alpha_tt, d.alpha_trt]), "beta": three([d.beta_r, d.beta_tt, d.beta_trt]),
+            "alpha": three(d.alpha), "beta": three(d.beta),
             "gamma_tt": f64::from(d.gamma_tt), "gamma_g": f64::from(d.gamma_g), "phi_g": f64::from(d.phi_g),
-            "i_r": three(d.intensity_r), "i_tt": three(d.intensity_tt), "i_trt": three(d.intensity_trt),
-            "i_g": f64::from(d.intensity_g)
+            "i_r": three(d.i_r), "i_tt": three(d.i_tt), "i_trt": three(d.i_trt),
+            "i_g": f64::from(d.i_g)
         },
         "wo": three(case.wo.into()),
         "wi": three(case.wi.into())

@@ -10,7 +10,7 @@ use hairis::params::HairDesc;
 use hairis::simd::Level;
 use hairis::{Gaussian, HairParams, Material, Published};
 use hairis_benches::hand::{Constants, Set};
-use hairis_reference::{HairReference, Parameters, Reference, Shape};
+use hairis_reference::{HairReference, Reference, Shape};
 use hairis_variants::Cauchy;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng as _;
@@ -81,33 +81,28 @@ impl Random {
     fn hair(&mut self, [least, most]: [f32; 2]) -> HairDesc {
         let mut between = |lo: f32, hi: f32| self.numbers()[0].mul_add(hi - lo, lo);
         let mut width = || between(least, most).to_radians();
-        let [beta_r, beta_tt, beta_trt, gamma_tt, gamma_g] =
-            [width(), width(), width(), width(), width()];
+        let (beta, gamma_tt, gamma_g) = ([width(), width(), width()], width(), width());
         let mut shift = || between(-15.0, 15.0).to_radians();
-        let [alpha_r, alpha_tt, alpha_trt] = [shift(), shift(), shift()];
+        let alpha = [shift(), shift(), shift()];
         let phi_g = between(20.0, 70.0).to_radians();
-        let intensity_g = between(0.2, 5.0);
+        let i_g = between(0.2, 5.0);
         let mut color = || [between(0.05, 1.0), between(0.05, 1.0), between(0.05, 1.0)];
-        let [intensity_r, intensity_tt, intensity_trt] = [color(), color(), color()];
-        let intensity_tt = if self.numbers()[0] < 1.0 / 3.0 {
+        let [i_r, i_tt, i_trt] = [color(), color(), color()];
+        let i_tt = if self.numbers()[0] < 1.0 / 3.0 {
             [0.0; 3]
         } else {
-            intensity_tt
+            i_tt
         };
         HairDesc {
-            alpha_r,
-            alpha_tt,
-            alpha_trt,
-            beta_r,
-            beta_tt,
-            beta_trt,
+            alpha,
+            beta,
             gamma_tt,
             gamma_g,
             phi_g,
-            intensity_r,
-            intensity_tt,
-            intensity_trt,
-            intensity_g,
+            i_r,
+            i_tt,
+            i_trt,
+            i_g,
         }
     }
 }
@@ -168,7 +163,7 @@ fn visit(
             let (desc, wo) = (random.hair(widths), random.direction());
             let params = &HairParams::new(&desc).expect("legal parameters");
             let reference =
-                &HairReference::prepare(&Parameters::from(params), shape, wo.map(f64::from));
+                &HairReference::prepare(&params.desc().map(f64::from), shape, wo.map(f64::from));
             let mut columns = [[0.0; ROWS]; 3];
             for i in 0..ROWS {
                 for (column, x) in columns.iter_mut().zip(rows(&mut random, wo)) {

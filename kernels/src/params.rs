@@ -1,13 +1,15 @@
 //! Parameters of hair: validated widths, shifts and intensities.
 
-use core::f32::consts::{FRAC_PI_2, PI};
+use core::f32::consts::PI;
 
 mod artist;
 mod error;
+mod pigment;
 mod presets;
 
 pub use artist::{ArtistControls, Glints, Highlight, Transmission};
-pub use error::ParamError;
+pub use error::{ParamError, Rule};
+pub use pigment::{melanin_absorption, melanin_concentrations, transmittance};
 
 /// Smallest width accepted, rad.
 pub const MIN_WIDTH: f32 = 1e-4;
@@ -15,67 +17,78 @@ pub const MIN_WIDTH: f32 = 1e-4;
 pub const MAX_WIDTH: f32 = PI;
 
 /// The parameters of the published model, not checked yet: set the fields that differ from the default and pass it to
-/// [`HairParams::new`].
+/// [`HairParams::new`]. `f32` for the kernels, `f64` for formulas; fields have the names of the paper and of files.
 ///
 /// - Source: Ou et al. 2012, section 3.1 and table 2 (after Sadeghi et al. 2010).
-/// - Units: angles in radians; intensities linear RGB.
-/// - Default: the default set of the efficiency figures: a `beta_r` of 7.5 degrees, brown hair.
+/// - Units: angles in radians; intensities linear RGB. Lists of three are of R, TT and TRT.
+/// - Default: [`HairParams::brown`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HairDesc {
-    /// Longitudinal shift of R, the centre of its lobe in `theta_h`, in `[-pi/2, pi/2]`.
-    pub alpha_r: f32,
-    /// Longitudinal shift of TT.
-    pub alpha_tt: f32,
-    /// Longitudinal shift of TRT and the glints.
-    pub alpha_trt: f32,
-    /// Longitudinal width of R in `theta_h` (Gaussian deviation, Cauchy scale), in `[1e-4, pi]`.
-    pub beta_r: f32,
-    /// Longitudinal width of TT.
-    pub beta_tt: f32,
-    /// Longitudinal width of TRT and the glints.
-    pub beta_trt: f32,
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+pub struct HairDesc<T = f32> {
+    /// Longitudinal shifts, the centres of the lobes in `theta_h`, each in `[-pi/2, pi/2]`. The glints have that of TRT.
+    pub alpha: [T; 3],
+    /// Longitudinal widths in `theta_h` (Gaussian deviation, Cauchy scale), each in `[1e-4, pi]`. The glints have that of TRT.
+    pub beta: [T; 3],
     /// Azimuthal width of TT, in `[1e-4, pi]`.
-    pub gamma_tt: f32,
+    pub gamma_tt: T,
     /// Azimuthal width of each glint, in `[1e-4, pi]`.
-    pub gamma_g: f32,
+    pub gamma_g: T,
     /// Half angle between the two glints, in `[0, pi]`.
-    pub phi_g: f32,
+    pub phi_g: T,
     /// Intensity of R, linear RGB, each finite and at least 0.
-    pub intensity_r: [f32; 3],
+    pub i_r: [T; 3],
     /// Intensity of TT.
-    pub intensity_tt: [f32; 3],
+    pub i_tt: [T; 3],
     /// Intensity of TRT, which the glints share.
-    pub intensity_trt: [f32; 3],
-    /// Strength of the glints, a factor on `intensity_trt`, finite and at least 0.
-    pub intensity_g: f32,
+    pub i_trt: [T; 3],
+    /// Strength of the glints, a factor on `i_trt`, finite and at least 0.
+    pub i_g: T,
 }
 
-impl HairDesc {
-    /// The default, for constants.
-    pub(crate) const DEFAULT: Self = {
-        let deg = PI / 180.0;
-        Self {
-            alpha_r: -7.5 * deg,
-            alpha_tt: 3.75 * deg,
-            alpha_trt: 11.25 * deg,
-            beta_r: 7.5 * deg,
-            beta_tt: 3.75 * deg,
-            beta_trt: 15.0 * deg,
-            gamma_tt: 10.0 * deg,
-            gamma_g: 10.0 * deg,
-            phi_g: 35.0 * deg,
-            intensity_r: [0.3; 3],
-            intensity_tt: [0.8, 0.6, 0.4],
-            intensity_trt: [0.7, 0.5, 0.3],
-            intensity_g: 0.5,
+impl<T: Copy> HairDesc<T> {
+    /// The same hair with every number converted.
+    #[inline]
+    #[must_use]
+    pub fn map<U>(&self, convert: impl Fn(T) -> U) -> HairDesc<U> {
+        HairDesc {
+            alpha: self.alpha.map(&convert),
+            beta: self.beta.map(&convert),
+            gamma_tt: convert(self.gamma_tt),
+            gamma_g: convert(self.gamma_g),
+            phi_g: convert(self.phi_g),
+            i_r: self.i_r.map(&convert),
+            i_tt: self.i_tt.map(&convert),
+            i_trt: self.i_trt.map(&convert),
+            i_g: convert(self.i_g),
         }
-    };
+    }
+}
+
+impl<T: Copy + core::ops::Mul<Output = T>> HairDesc<T> {
+    /// The same hair with all five widths multiplied by `factor`; the bells, the sampler and the energies follow.
+    ///
+    /// The Cauchy variant is published with the Gaussian widths unchanged (1). 1.177 matches the half width of the
+    /// Gaussian, 0.798 its area.
+    #[inline]
+    #[must_use]
+    pub fn with_width_factor(self, factor: T) -> Self {
+        Self {
+            beta: self.beta.map(|beta| beta * factor),
+            gamma_tt: self.gamma_tt * factor,
+            gamma_g: self.gamma_g * factor,
+            ..self
+        }
+    }
 }
 
 impl Default for HairDesc {
     #[inline]
     fn default() -> Self {
-        Self::DEFAULT
+        *HairParams::brown().desc()
     }
 }
 
@@ -84,11 +97,16 @@ impl Default for HairDesc {
 /// ```
 /// use hairis::HairParams;
 /// use hairis::params::HairDesc;
-/// let glossy = HairParams::new(&HairDesc { beta_r: 0.05, ..*HairParams::black().desc() })?;
-/// assert_eq!(glossy.desc().beta_r, 0.05);
+/// let glossy = HairParams::new(&HairDesc { beta: [0.05, 0.03, 0.1], ..*HairParams::black().desc() })?;
+/// assert_eq!(glossy.desc().beta[0], 0.05);
 /// # Ok::<(), hairis::ParamError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "HairDesc", into = "HairDesc")
+)]
 pub struct HairParams(HairDesc);
 
 impl HairParams {
@@ -100,48 +118,21 @@ impl HairParams {
     /// All intensities zero is legal: the model then evaluates to 0 and every sample is discarded.
     #[inline]
     pub fn new(desc: &HairDesc) -> Result<Self, ParamError> {
-        let shifts = [
-            ("alpha_r", desc.alpha_r),
-            ("alpha_tt", desc.alpha_tt),
-            ("alpha_trt", desc.alpha_trt),
+        let d = desc;
+        let fields: [(_, &[f32], _); 9] = [
+            ("alpha", &d.alpha, Rule::Shift),
+            ("beta", &d.beta, Rule::Width),
+            ("gamma_tt", &[d.gamma_tt], Rule::Width),
+            ("gamma_g", &[d.gamma_g], Rule::Width),
+            ("phi_g", &[d.phi_g], Rule::Azimuth),
+            ("i_r", &d.i_r, Rule::NotNegative),
+            ("i_tt", &d.i_tt, Rule::NotNegative),
+            ("i_trt", &d.i_trt, Rule::NotNegative),
+            ("i_g", &[d.i_g], Rule::NotNegative),
         ];
-        for (field, value) in shifts {
-            check(value.abs() <= FRAC_PI_2, ParamError::Shift(field, value))?;
+        for (field, numbers, rule) in fields {
+            rule.check(field, numbers)?;
         }
-        let widths = [
-            ("beta_r", desc.beta_r),
-            ("beta_tt", desc.beta_tt),
-            ("beta_trt", desc.beta_trt),
-            ("gamma_tt", desc.gamma_tt),
-            ("gamma_g", desc.gamma_g),
-        ];
-        for (field, value) in widths {
-            check(
-                (MIN_WIDTH..=MAX_WIDTH).contains(&value),
-                ParamError::Width(field, value),
-            )?;
-        }
-        check(
-            (0.0..=PI).contains(&desc.phi_g),
-            ParamError::GlintAngle("phi_g", desc.phi_g),
-        )?;
-        let colours = [
-            ("intensity_r", desc.intensity_r),
-            ("intensity_tt", desc.intensity_tt),
-            ("intensity_trt", desc.intensity_trt),
-        ];
-        for (field, rgb) in colours {
-            for (channel, value) in rgb.into_iter().enumerate() {
-                check(
-                    is_intensity(value),
-                    ParamError::Intensity(field, channel, value),
-                )?;
-            }
-        }
-        check(
-            is_intensity(desc.intensity_g),
-            ParamError::Scalar("intensity_g", desc.intensity_g),
-        )?;
         Ok(Self(*desc))
     }
 
@@ -160,24 +151,32 @@ impl HairParams {
     /// If `factor` is negative or not finite, or a product overflows.
     #[inline]
     pub fn scaled(&self, factor: f32) -> Result<Self, ParamError> {
-        check(is_intensity(factor), ParamError::Scalar("factor", factor))?;
+        Rule::NotNegative.check("factor", &[factor])?;
         let d = self.0;
-        let by = |[r, g, b]: [f32; 3]| [r * factor, g * factor, b * factor];
+        let by = |rgb: [f32; 3]| rgb.map(|c| c * factor);
         Self::new(&HairDesc {
-            intensity_r: by(d.intensity_r),
-            intensity_tt: by(d.intensity_tt),
-            intensity_trt: by(d.intensity_trt),
+            i_r: by(d.i_r),
+            i_tt: by(d.i_tt),
+            i_trt: by(d.i_trt),
             ..d
         })
     }
 }
 
-#[inline]
-fn is_intensity(value: f32) -> bool {
-    (0.0..=f32::MAX).contains(&value)
+#[cfg(feature = "serde")]
+impl TryFrom<HairDesc> for HairParams {
+    type Error = ParamError;
+
+    #[inline]
+    fn try_from(desc: HairDesc) -> Result<Self, ParamError> {
+        Self::new(&desc)
+    }
 }
 
-#[inline]
-fn check(passed: bool, error: ParamError) -> Result<(), ParamError> {
-    if passed { Ok(()) } else { Err(error) }
+#[cfg(feature = "serde")]
+impl From<HairParams> for HairDesc {
+    #[inline]
+    fn from(params: HairParams) -> Self {
+        params.0
+    }
 }

@@ -13,13 +13,11 @@ type Tested = Matched<Gaussian, 9, true>;
 
 /// Red hair: what it transmits has next to no blue, and what it reflects has no colour.
 fn red() -> HairParams {
-    let intensities = ([0.05; 3], [0.9, 0.35, 0.08], [0.6, 0.12, 0.01]);
-    let (intensity_r, intensity_tt, intensity_trt) = intensities;
     HairParams::new(&HairDesc {
-        intensity_r,
-        intensity_tt,
-        intensity_trt,
-        ..HairDesc::default()
+        i_r: [0.05; 3],
+        i_tt: [0.9, 0.35, 0.08],
+        i_trt: [0.6, 0.12, 0.01],
+        ..*HairParams::bright().desc()
     })
     .unwrap()
 }

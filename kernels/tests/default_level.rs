@@ -9,12 +9,12 @@ use hairis::{Gaussian, HairParams, Material, Material8, Published};
 fn packets_without_a_level_run_on_the_one_found() {
     let mut draws = Draws(71);
     let narrow = HairParams::new(&HairDesc {
-        beta_r: 0.05,
-        ..HairDesc::default()
+        beta: [0.05; 3],
+        ..*HairParams::bright().desc()
     })
     .unwrap();
     let [a, b] =
-        [HairParams::default(), narrow].map(|params| Material::new(&Published(Gaussian), &params));
+        [HairParams::bright(), narrow].map(|params| Material::new(&Published(Gaussian), &params));
     let packed = Material8::pack([&a, &b, &b, &a, &a, &b, &a, &b]);
     let level = Level::detect();
     for _ in 0..100 {

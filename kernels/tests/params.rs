@@ -1,26 +1,26 @@
 //! Parameters: the presets and the artist's controls.
 
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::params::{ArtistControls, Glints, HairDesc, Highlight, Transmission};
+use hairis::params::{
+    ArtistControls, Glints, HairDesc, Highlight, Rule, Transmission, melanin_absorption,
+    transmittance,
+};
 use hairis::{HairParams, ParamError};
 use hairis_conformance::published::quadrature::{panels, rule};
-use hairis_reference::{HairReference, Parameters, Reference, Shape};
+use hairis_reference::{HairReference, Reference, Shape};
 
 #[test]
 fn presets_pass_their_own_checks() {
     for (name, preset) in HairParams::presets() {
         assert_eq!(HairParams::new(preset.desc()), Ok(preset), "preset {name}");
     }
-    assert_eq!(
-        HairParams::default(),
-        HairParams::new(&HairDesc::default()).unwrap(),
-        "the default set"
-    );
+    assert_eq!(HairParams::default(), HairParams::brown());
+    assert_eq!(HairDesc::default(), *HairParams::brown().desc());
 }
 
 /// Share of the light a fibre returns, by channel, averaged over the directions it comes from (Gaussian model).
 fn mean_albedo(params: &HairParams) -> [f64; 3] {
-    let p = Parameters::<f64>::from(params);
+    let p = params.desc().map(f64::from);
     let inner = FRAC_PI_2 - 1e-5;
     let phi = rule(&panels(0.0, PI, &[(PI, p.gamma_tt), (p.phi_g, p.gamma_g)]));
     let mut sum = [0.0; 3];
@@ -43,7 +43,7 @@ fn mean_albedo(params: &HairParams) -> [f64; 3] {
 fn presets_return_less_than_they_receive() {
     // As documented beside each preset.
     let documented = [
-        ("default", [3.91, 3.00, 2.09]),
+        ("bright", [3.91, 3.00, 2.09]),
         ("blond", [0.81, 0.62, 0.34]),
         ("brown", [0.48, 0.30, 0.19]),
         ("red", [0.70, 0.27, 0.13]),
@@ -62,19 +62,95 @@ fn presets_return_less_than_they_receive() {
                 "{name}: albedo {albedo:?}, documented {expected}"
             );
             assert!(
-                found < 1.0 || name == "default",
+                found < 1.0 || name == "bright",
                 "{name} returns more than it receives: {albedo:?}"
             );
         }
     }
 }
 
+/// Every number of a description.
+fn numbers(d: &HairDesc) -> Vec<f32> {
+    let scalars = [d.gamma_tt, d.gamma_g, d.phi_g, d.i_g];
+    [d.alpha, d.beta, d.i_r, d.i_tt, d.i_trt]
+        .concat()
+        .into_iter()
+        .chain(scalars)
+        .collect()
+}
+
 #[test]
-fn artist_defaults_are_the_default_set() {
+fn artist_defaults_are_the_default_hair() {
+    let made = HairParams::from_artist(&ArtistControls::default()).unwrap();
+    let default = numbers(&HairDesc::default());
+    for (made, default) in numbers(made.desc()).into_iter().zip(default) {
+        assert!((made / default - 1.0).abs() < 2e-7, "{made}, not {default}");
+    }
+}
+
+/// `2 mean(cos gamma_t)`, by the midpoint rule over offsets across the fibre.
+#[test]
+fn light_passes_as_much_as_the_mean_passage_lets_it() {
+    let cos = |i: u32| {
+        let h = (f64::from(i) + 0.5) / 1e5;
+        (1.0 - (h / 1.55) * (h / 1.55)).sqrt()
+    };
+    let passage = 2.0 * (0..100_000).map(cos).sum::<f64>() / 1e5;
+    let [passed, ..] = transmittance([1.0; 3]).unwrap();
+    assert!((f64::from(passed).ln() + passage).abs() < 1e-6, "{passage}");
+}
+
+#[test]
+fn pigment_darkens_and_reddens() {
+    let look = |amount, redness| {
+        let controls = ArtistControls::default()
+            .with_melanin(amount, redness)
+            .unwrap();
+        let desc = *HairParams::from_artist(&controls).unwrap().desc();
+        (controls, desc)
+    };
+    let mut last = [f32::INFINITY; 6];
+    for step in 0..=20_u8 {
+        let (controls, desc) = look(f32::from(step) / 20.0, 0.3);
+        let colors = [controls.transmission.color, controls.secondary.color].concat();
+        assert!(
+            colors.iter().all(|c| (0.0..=1.0).contains(c)),
+            "{step}: {colors:?}"
+        );
+        let now: [f32; 6] = [desc.i_tt, desc.i_trt].concat().try_into().unwrap();
+        assert!(
+            now.iter().zip(last).all(|(now, last)| *now < last),
+            "{step}"
+        );
+        last = now;
+    }
+    // No pigment lets all light pass, and red pigment keeps more red for the green it keeps.
+    assert_eq!(look(0.0, 0.0).0.transmission.color, [1.0; 3]);
+    let hue = |redness| {
+        let [r, g, _] = look(0.6, redness).0.transmission.color;
+        r / g
+    };
+    assert!(hue(0.0) < hue(0.5) && hue(0.5) < hue(1.0));
+    // Half as much pigment as the brown of d'Eon et al. has the colours of the preset, to .06.
+    let brown = transmittance(melanin_absorption([0.65, 0.0])).unwrap();
+    let preset = HairDesc::default().i_tt.map(|i| i / 3.0);
+    for (found, preset) in brown.into_iter().zip(preset) {
+        assert!((found - preset).abs() < 0.06, "{brown:?}, not {preset}");
+    }
+    // Pigment of the concentrations that make hair brown, red and blond returns less than it receives.
+    for melanin in [[1.3, 0.0], [0.25, 1.1], [0.3, 0.0], [8.0, 0.0]] {
+        let controls = ArtistControls::default()
+            .with_absorption(melanin_absorption(melanin))
+            .unwrap();
+        let albedo = mean_albedo(&HairParams::from_artist(&controls).unwrap());
+        assert!(albedo.iter().all(|a| *a < 1.0), "{melanin:?}: {albedo:?}");
+    }
+    let refused = ArtistControls::default()
+        .with_melanin(0.5, 1.5)
+        .unwrap_err();
     assert_eq!(
-        HairParams::from_artist(&ArtistControls::default()),
-        Ok(HairParams::default()),
-        "default controls"
+        refused.to_string(),
+        "melanin_amount[1] must be in [0, 1], got 1.5"
     );
 }
 
@@ -106,12 +182,12 @@ fn artist_controls_reach_their_parameters() {
     };
     let desc = *HairParams::from_artist(&controls).unwrap().desc();
     let angles = [
-        (desc.alpha_r, -9.0),
-        (desc.alpha_tt, 4.5),
-        (desc.alpha_trt, 13.5),
-        (desc.beta_r, 6.0),
-        (desc.beta_tt, 3.0),
-        (desc.beta_trt, 12.0),
+        (desc.alpha[0], -9.0),
+        (desc.alpha[1], 4.5),
+        (desc.alpha[2], 13.5),
+        (desc.beta[0], 6.0),
+        (desc.beta[1], 3.0),
+        (desc.beta[2], 12.0),
         (desc.gamma_tt, 20.0),
         (desc.gamma_g, 15.0),
         (desc.phi_g, 40.0),
@@ -123,7 +199,7 @@ fn artist_controls_reach_their_parameters() {
         );
     }
     assert_eq!(
-        (desc.intensity_r, desc.intensity_g),
+        (desc.i_r, desc.i_g),
         ([0.25, 0.5, 1.0], 2.0),
         "color times intensity, and strength"
     );
@@ -160,28 +236,33 @@ fn artist_ranges_hold_their_ends() {
     }
 }
 
+/// The refusal of an angle in degrees.
+fn degrees(field: &'static str, value: f32, range: [f32; 2]) -> ParamError {
+    ParamError::new(field, None, Rule::Degrees(range), value)
+}
+
 #[test]
 fn artist_errors_name_the_control() {
     type Edit = fn(&mut ArtistControls);
     let cases: [(Edit, ParamError, &str); 8] = [
         (
             |c| c.secondary.width_deg = 0.0,
-            ParamError::Degrees("secondary.width_deg", 0.0, [0.01, 180.0]),
+            degrees("secondary.width_deg", 0.0, [0.01, 180.0]),
             "secondary.width_deg must be an angle in [0.01, 180] degrees, got 0",
         ),
         (
             |c| c.primary.shift_deg = -91.0,
-            ParamError::Degrees("primary.shift_deg", -91.0, [-90.0, 90.0]),
+            degrees("primary.shift_deg", -91.0, [-90.0, 90.0]),
             "primary.shift_deg must be an angle in [-90, 90] degrees, got -91",
         ),
         (
             |c| c.glints.separation_deg = 400.0,
-            ParamError::Degrees("glints.separation_deg", 400.0, [0.0, 360.0]),
+            degrees("glints.separation_deg", 400.0, [0.0, 360.0]),
             "glints.separation_deg must be an angle in [0, 360] degrees, got 400",
         ),
         (
             |c| c.transmission.azimuthal_width_deg = f32::INFINITY,
-            ParamError::Degrees(
+            degrees(
                 "transmission.azimuthal_width_deg",
                 f32::INFINITY,
                 [0.01, 180.0],
@@ -190,23 +271,23 @@ fn artist_errors_name_the_control() {
         ),
         (
             |c| c.transmission.color[1] = -0.5,
-            ParamError::Intensity("transmission.color", 1, -0.5),
+            ParamError::new("transmission.color", Some(1), Rule::NotNegative, -0.5),
             "transmission.color[1] must be finite and at least 0, got -0.5",
         ),
         (
             |c| c.primary.intensity = -1.0,
-            ParamError::Scalar("primary.intensity", -1.0),
+            ParamError::new("primary.intensity", None, Rule::NotNegative, -1.0),
             "primary.intensity must be finite and at least 0, got -1",
         ),
         (
             |c| c.glints.strength = -2.0,
-            ParamError::Scalar("glints.strength", -2.0),
+            ParamError::new("glints.strength", None, Rule::NotNegative, -2.0),
             "glints.strength must be finite and at least 0, got -2",
         ),
         (
             |c| (c.primary.intensity, c.primary.color) = (f32::MAX, [2.0; 3]),
-            ParamError::Overflow("primary.color", 0, 2.0),
-            "primary.color[0] times its intensity must be finite, got a color of 2",
+            ParamError::new("primary.color", Some(0), Rule::FiniteProduct, 2.0),
+            "primary.color[0] must be so small that its product with the intensity is finite, got 2",
         ),
     ];
     for (edit, error, message) in cases {

@@ -3,6 +3,7 @@
 use core::f32::consts::FRAC_PI_2;
 use hairis::model::math::{atan_unit, tan_half_turn};
 use hairis::model::{Bell, MatchedBell, TwoBells};
+use hairis::params::Rule;
 use hairis::simd::Lanes;
 use hairis::{Matched, ParamError, Published};
 
@@ -43,11 +44,8 @@ impl Cauchy {
     /// If the factor is not in `[0.5, 4]`.
     #[inline]
     pub fn with_width_factor(width_factor: f32) -> Result<Self, ParamError> {
-        if (0.5..=4.0).contains(&width_factor) {
-            Ok(Self { width_factor })
-        } else {
-            Err(ParamError::WidthFactor("width_factor", width_factor))
-        }
+        Rule::Range([0.5, 4.0]).check("width_factor", &[width_factor])?;
+        Ok(Self { width_factor })
     }
 
     /// The model made of this bell.

@@ -2,9 +2,11 @@
 
 use crate::{Cauchy, Field, Kind, Parameters, Registered, Values};
 use hairis::model::MatchedBell;
-use hairis::params::HairDesc;
+use hairis::params::{HairDesc, Rule};
 use hairis::{Gaussian, HairParams, Matched, ParamError, Published};
 
+/// One number per lobe.
+const LOBES: Kind = Kind::Numbers(&["R", "TT", "TRT"]);
 /// Half a degree, rad.
 const NARROW: f32 = 0.008_726_646;
 
@@ -14,39 +16,70 @@ impl Parameters for HairParams {
     const FIELDS: &'static [Field] = &[
         Field::new(
             "alpha",
-            Kind::Numbers(&["alpha_r", "alpha_tt", "alpha_trt"]),
+            LOBES,
+            Rule::Shift,
+            "Longitudinal shifts of the lobes.",
         )
+        .radians()
         .uniform(-15.0, 15.0)
         .degrees(),
-        Field::new("beta", Kind::Numbers(&["beta_r", "beta_tt", "beta_trt"]))
-            .log_uniform(1.0, 30.0)
-            .degrees()
-            .narrow(NARROW),
-        Field::new("gamma_tt", Kind::Number)
-            .log_uniform(1.0, 30.0)
-            .degrees()
-            .narrow(NARROW),
-        Field::new("gamma_g", Kind::Number)
-            .log_uniform(1.0, 30.0)
-            .degrees()
-            .narrow(NARROW),
-        Field::new("phi_g", Kind::Number)
-            .uniform(10.0, 80.0)
-            .degrees()
-            .late(),
-        Field::new("i_r", Kind::Rgb)
-            .alias("intensity_r")
-            .uniform(0.0, 1.0),
-        Field::new("i_tt", Kind::Rgb)
-            .alias("intensity_tt")
-            .uniform(0.0, 1.0),
-        Field::new("i_trt", Kind::Rgb)
-            .alias("intensity_trt")
-            .uniform(0.0, 1.0),
-        Field::new("i_g", Kind::Number)
-            .alias("intensity_g")
-            .log_uniform(0.1, 10.0)
-            .late(),
+        Field::new(
+            "beta",
+            LOBES,
+            Rule::Width,
+            "Longitudinal widths of the lobes.",
+        )
+        .radians()
+        .log_uniform(1.0, 30.0)
+        .degrees()
+        .narrow(NARROW),
+        Field::new(
+            "gamma_tt",
+            Kind::Number,
+            Rule::Width,
+            "Azimuthal width of TT.",
+        )
+        .radians()
+        .log_uniform(1.0, 30.0)
+        .degrees()
+        .narrow(NARROW),
+        Field::new(
+            "gamma_g",
+            Kind::Number,
+            Rule::Width,
+            "Azimuthal width of each glint.",
+        )
+        .radians()
+        .log_uniform(1.0, 30.0)
+        .degrees()
+        .narrow(NARROW),
+        Field::new(
+            "phi_g",
+            Kind::Number,
+            Rule::Azimuth,
+            "Half angle between the glints.",
+        )
+        .radians()
+        .uniform(10.0, 80.0)
+        .degrees()
+        .late(),
+        Field::new("i_r", Kind::Rgb, Rule::NotNegative, "Intensity of R.").uniform(0.0, 1.0),
+        Field::new("i_tt", Kind::Rgb, Rule::NotNegative, "Intensity of TT.").uniform(0.0, 1.0),
+        Field::new(
+            "i_trt",
+            Kind::Rgb,
+            Rule::NotNegative,
+            "Intensity of TRT, which the glints share.",
+        )
+        .uniform(0.0, 1.0),
+        Field::new(
+            "i_g",
+            Kind::Number,
+            Rule::NotNegative,
+            "Strength of the glints, a factor on i_trt.",
+        )
+        .log_uniform(0.1, 10.0)
+        .late(),
     ];
     const PRESETS: &'static [(&'static str, Self)] = &Self::presets();
 
@@ -54,40 +87,46 @@ impl Parameters for HairParams {
     fn values(&self) -> Values {
         let d = self.desc();
         Values::none(Self::FIELDS)
-            .with("alpha", &[d.alpha_r, d.alpha_tt, d.alpha_trt])
-            .with("beta", &[d.beta_r, d.beta_tt, d.beta_trt])
+            .with("alpha", &d.alpha)
+            .with("beta", &d.beta)
             .with("gamma_tt", &[d.gamma_tt])
             .with("gamma_g", &[d.gamma_g])
             .with("phi_g", &[d.phi_g])
-            .with("i_r", &d.intensity_r)
-            .with("i_tt", &d.intensity_tt)
-            .with("i_trt", &d.intensity_trt)
-            .with("i_g", &[d.intensity_g])
+            .with("i_r", &d.i_r)
+            .with("i_tt", &d.i_tt)
+            .with("i_trt", &d.i_trt)
+            .with("i_g", &[d.i_g])
     }
 
     #[inline]
     fn from_values(values: &Values) -> Result<Self, ParamError> {
-        let [alpha_r, alpha_tt, alpha_trt] = values.get("alpha");
-        let [beta_r, beta_tt, beta_trt] = values.get("beta");
-        let number = |name| {
-            let [number] = values.get(name);
-            number
-        };
-        Self::new(&HairDesc {
-            alpha_r,
-            alpha_tt,
-            alpha_trt,
-            beta_r,
-            beta_tt,
-            beta_trt,
-            gamma_tt: number("gamma_tt"),
-            gamma_g: number("gamma_g"),
-            phi_g: number("phi_g"),
-            intensity_r: values.get("i_r"),
-            intensity_tt: values.get("i_tt"),
-            intensity_trt: values.get("i_trt"),
-            intensity_g: number("i_g"),
-        })
+        Self::new(&hair_desc(values))
+    }
+
+    #[inline]
+    fn scaled(&self, factor: f32) -> Result<Self, ParamError> {
+        Self::scaled(self, factor)
+    }
+}
+
+/// The description that values of the fields of [`HairParams`] give, with numbers of any type; nothing is checked.
+///
+/// # Panics
+///
+/// If the values are of another model.
+#[inline]
+#[must_use]
+pub fn hair_desc<T: Copy + Default>(values: &Values<T>) -> HairDesc<T> {
+    HairDesc {
+        alpha: values.get_at(0),
+        beta: values.get_at(1),
+        gamma_tt: values.number_at(2),
+        gamma_g: values.number_at(3),
+        phi_g: values.number_at(4),
+        i_r: values.get_at(5),
+        i_tt: values.get_at(6),
+        i_trt: values.get_at(7),
+        i_g: values.number_at(8),
     }
 }
 

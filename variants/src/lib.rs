@@ -14,7 +14,6 @@
 #![warn(clippy::missing_inline_in_public_items)]
 
 mod cauchy;
-mod check;
 pub mod chiang;
 mod hair;
 pub mod kajiya_kay;
@@ -23,9 +22,9 @@ mod registry;
 
 pub use cauchy::Cauchy;
 pub use chiang::{Chiang, ChiangDesc, ChiangParams};
-pub use hair::RegisteredBell;
+pub use hair::{RegisteredBell, hair_desc};
 pub use kajiya_kay::{KajiyaKay, KajiyaKayDesc, KajiyaKayParams};
-pub use parameters::{Draw, Field, Kind, Parameters, Values};
+pub use parameters::{Draw, Field, FieldError, Kind, Parameters, Values};
 #[cfg(feature = "any")]
 pub use registry::{AnyBsdf, AnyBsdf8, AnyMaterial, AnyMaterial8};
 pub use registry::{ModelId, Registered, Visitor};

@@ -1,15 +1,16 @@
 //! Parameters as data: the fields of a model by name, for files, command lines, random materials and reports.
 
 use core::f32::consts::PI;
-use core::fmt::Debug;
+use core::fmt;
 use hairis::ParamError;
+use hairis::params::Rule;
 
 /// Shape of a field's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A number.
     Number,
-    /// Numbers, each with the name that a [`ParamError`] gives it.
+    /// Numbers, each with a label.
     Numbers(&'static [&'static str]),
     /// Linear red, green and blue.
     Rgb,
@@ -46,12 +47,16 @@ pub struct Draw {
 /// A field of a model's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Field {
-    /// Name in files.
+    /// Name in files, in a [`ParamError`], and of the field of the description.
     pub name: &'static str,
-    /// Name in a [`ParamError`], unless [`Kind::Numbers`] gives one for each number.
-    pub alias: &'static str,
     /// Shape of the value.
     pub kind: Kind,
+    /// The rule that every number obeys; `None` for words.
+    pub rule: Option<Rule>,
+    /// Unit of the numbers: "rad", or nothing.
+    pub unit: &'static str,
+    /// A sentence for interfaces and documentation.
+    pub doc: &'static str,
     /// Whether it may be left out; its default is that of the parameters.
     pub optional: bool,
     /// The field it may take the place of: exactly one of such a group is given.
@@ -65,14 +70,26 @@ pub struct Field {
 }
 
 impl Field {
-    /// A field that is required, not drawn, and of one name everywhere.
+    /// A field of numbers that obey `rule`: required, without a unit, and not drawn.
     #[inline]
     #[must_use]
-    pub const fn new(name: &'static str, kind: Kind) -> Self {
+    pub const fn new(name: &'static str, kind: Kind, rule: Rule, doc: &'static str) -> Self {
+        Self {
+            rule: Some(rule),
+            ..Self::word(name, kind, doc)
+        }
+    }
+
+    /// A field of words: required, and drawn as any other.
+    #[inline]
+    #[must_use]
+    pub const fn word(name: &'static str, kind: Kind, doc: &'static str) -> Self {
         Self {
             name,
-            alias: name,
             kind,
+            rule: None,
+            unit: "",
+            doc,
             optional: false,
             instead_of: None,
             draw: None,
@@ -81,11 +98,24 @@ impl Field {
         }
     }
 
-    /// With another name in a [`ParamError`].
+    /// With numbers in radians.
     #[inline]
     #[must_use]
-    pub const fn alias(self, alias: &'static str) -> Self {
-        Self { alias, ..self }
+    pub const fn radians(self) -> Self {
+        Self {
+            unit: "rad",
+            ..self
+        }
+    }
+
+    /// The range of the numbers that are accepted: an interface's slider. `None` for words.
+    #[inline]
+    #[must_use]
+    pub const fn range(&self) -> Option<[f32; 2]> {
+        match self.rule {
+            Some(rule) => Some(rule.range()),
+            None => None,
+        }
     }
 
     /// May be left out.
@@ -169,34 +199,50 @@ impl Field {
         }
     }
 
-    /// The place that `error` refuses: the field, and which of its numbers if the error names one.
+    /// The place that `error` refuses: the field, and which of its numbers if it has several.
     #[inline]
     #[must_use]
     pub fn refused<'a>(
         fields: &'a [Self],
         error: &ParamError,
     ) -> Option<(&'a Self, Option<usize>)> {
-        let name = error.field();
-        fields.iter().find_map(|field| match field.kind {
-            Kind::Numbers(names) if field.alias != name => {
-                Some((field, Some(names.iter().position(|n| *n == name)?)))
-            }
-            _ if field.alias != name => None,
-            _ => Some((field, channel(error))),
-        })
+        let field = fields.iter().find(|field| field.name == error.field())?;
+        Some((field, error.number()))
+    }
+
+    /// Whether both may be given only in place of each other.
+    #[inline]
+    fn excludes(&self, other: &Self) -> bool {
+        let head = |field: &Self| field.instead_of.unwrap_or(field.name);
+        self.name != other.name && head(self) == head(other)
     }
 }
 
-/// The channel of a colour that `error` refuses.
-#[inline]
-fn channel(error: &ParamError) -> Option<usize> {
-    match error {
-        ParamError::Intensity(_, channel, _) | ParamError::Overflow(_, channel, _) => {
-            Some(*channel)
+/// Refusal of [`Values::set`] and [`Values::set_word`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FieldError {
+    /// There is no field of this name.
+    Name,
+    /// The field has this many numbers.
+    Count(usize),
+    /// The field has these words.
+    Word(&'static [&'static str]),
+}
+
+impl fmt::Display for FieldError {
+    #[inline]
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Name => f.write_str("the model has no such field"),
+            Self::Count(count) => write!(f, "the field must have {count} numbers"),
+            Self::Word([]) => f.write_str("the field has numbers and no words"),
+            Self::Word(words) => write!(f, "the field must be one of {words:?}"),
         }
-        _ => None,
     }
 }
+
+impl core::error::Error for FieldError {}
 
 /// Values of fields: plain data, whatever the model. Parameters are made of single precision; the formulas take any.
 #[derive(Clone, Copy, Debug)]
@@ -238,7 +284,41 @@ impl<T: Copy + Default> Values<T> {
         self.fields
     }
 
-    /// With a value for the field `name`: as many numbers as it has.
+    /// Sets the numbers of the field `name`, and takes away the fields that it stands for.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such field, or it has another count of numbers.
+    #[inline]
+    pub fn set(&mut self, name: &str, numbers: &[T]) -> Result<(), FieldError> {
+        let index = self.index(name).ok_or(FieldError::Name)?;
+        self.set_at(index, numbers)
+    }
+
+    /// Sets the numbers of the field of this index: see [`set`](Self::set).
+    ///
+    /// # Errors
+    ///
+    /// If there is no such field, or it has another count of numbers.
+    #[inline]
+    pub fn set_at(&mut self, index: usize, numbers: &[T]) -> Result<(), FieldError> {
+        let field = self.fields.get(index).ok_or(FieldError::Name)?;
+        let count = field.kind.width();
+        if numbers.len() != count {
+            return Err(FieldError::Count(count));
+        }
+        let at = self.offset(index);
+        self.numbers[at..at + count].copy_from_slice(numbers);
+        for (other, of) in self.fields.iter().enumerate() {
+            if field.excludes(of) {
+                self.given &= !(1 << other);
+            }
+        }
+        self.given |= 1 << index;
+        Ok(())
+    }
+
+    /// With a value for the field `name`: see [`set`](Self::set).
     ///
     /// # Panics
     ///
@@ -246,13 +326,8 @@ impl<T: Copy + Default> Values<T> {
     #[inline]
     #[must_use]
     pub fn with(mut self, name: &str, numbers: &[T]) -> Self {
-        let (index, at) = self.place(name);
-        assert!(
-            self.fields[index].kind.width() == numbers.len(),
-            "the field has another count of numbers"
-        );
-        self.numbers[at..at + numbers.len()].copy_from_slice(numbers);
-        self.given |= 1 << index;
+        self.set(name, numbers)
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
         self
     }
 
@@ -264,7 +339,7 @@ impl<T: Copy + Default> Values<T> {
     #[inline]
     #[must_use]
     pub fn without(mut self, name: &str) -> Self {
-        self.given &= !(1 << self.place(name).0);
+        self.given &= !(1 << self.known(name));
         self
     }
 
@@ -276,7 +351,7 @@ impl<T: Copy + Default> Values<T> {
     #[inline]
     #[must_use]
     pub fn has(&self, name: &str) -> bool {
-        self.given >> self.place(name).0 & 1 == 1
+        self.has_at(self.known(name))
     }
 
     /// The numbers of the field `name`, 0 if it has no value.
@@ -287,7 +362,25 @@ impl<T: Copy + Default> Values<T> {
     #[inline]
     #[must_use]
     pub fn numbers(&self, name: &str) -> &[T] {
-        let (index, at) = self.place(name);
+        self.numbers_at(self.known(name))
+    }
+
+    /// Whether the field of this index has a value.
+    #[inline]
+    #[must_use]
+    pub const fn has_at(&self, index: usize) -> bool {
+        index < MOST && self.given >> index & 1 == 1
+    }
+
+    /// The numbers of the field of this index, 0 if it has no value.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field.
+    #[inline]
+    #[must_use]
+    pub fn numbers_at(&self, index: usize) -> &[T] {
+        let at = self.offset(index);
         &self.numbers[at..at + self.fields[index].kind.width()]
     }
 
@@ -299,27 +392,53 @@ impl<T: Copy + Default> Values<T> {
     #[inline]
     #[must_use]
     pub fn get<const N: usize>(&self, name: &str) -> [T; N] {
-        let Ok(numbers) = self.numbers(name).try_into() else {
+        self.get_at(self.known(name))
+    }
+
+    /// The `N` numbers of the field of this index, 0 if it has no value.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field, or it has another count of numbers.
+    #[inline]
+    #[must_use]
+    pub fn get_at<const N: usize>(&self, index: usize) -> [T; N] {
+        let Ok(numbers) = self.numbers_at(index).try_into() else {
             panic!("the field has another count of numbers")
         };
         numbers
     }
 
-    /// Index of the field `name`, and where its numbers begin.
+    /// The number of the field of this index, 0 if it has no value.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field, or it has several numbers.
     #[inline]
-    fn place(&self, name: &str) -> (usize, usize) {
-        let index = self
-            .fields
-            .iter()
-            .position(|field| field.name == name)
-            .expect("a field of the model");
-        (
-            index,
-            self.fields[..index]
-                .iter()
-                .map(|field| field.kind.width())
-                .sum(),
-        )
+    #[must_use]
+    pub fn number_at(&self, index: usize) -> T {
+        let [number] = self.get_at(index);
+        number
+    }
+
+    /// The index of the field `name`.
+    #[inline]
+    #[must_use]
+    pub fn index(&self, name: &str) -> Option<usize> {
+        self.fields.iter().position(|field| field.name == name)
+    }
+
+    /// The index of a field that there is.
+    #[inline]
+    fn known(&self, name: &str) -> usize {
+        self.index(name).expect("a field of the model")
+    }
+
+    /// Where the numbers of a field begin.
+    #[inline]
+    fn offset(&self, index: usize) -> usize {
+        let before = &self.fields[..index];
+        before.iter().map(|field| field.kind.width()).sum()
     }
 }
 
@@ -327,25 +446,34 @@ impl Values {
     /// Largest count of numbers of a model, and of its fields.
     pub const MOST: usize = MOST;
 
-    /// With a word for the field `name`.
+    /// Sets the word of the field `name`, and takes away the fields that it stands for.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such field, or it has no such word.
+    #[inline]
+    pub fn set_word(&mut self, name: &str, word: &str) -> Result<(), FieldError> {
+        let index = self.index(name).ok_or(FieldError::Name)?;
+        let Kind::Word(words) = self.fields[index].kind else {
+            return Err(FieldError::Word(&[]));
+        };
+        let mut places = words.iter().zip(0_u8..);
+        let place = places.find(|(one, _)| **one == word);
+        let (_, place) = place.ok_or(FieldError::Word(words))?;
+        self.set_at(index, &[f32::from(place)])
+    }
+
+    /// With a word for the field `name`: see [`set_word`](Self::set_word).
     ///
     /// # Panics
     ///
     /// If there is no such field, or it has no such word.
     #[inline]
     #[must_use]
-    pub fn with_word(self, name: &str, word: &str) -> Self {
-        let (index, _) = self.place(name);
-        let Kind::Word(words) = self.fields[index].kind else {
-            panic!("not a field of words")
-        };
-        let place = words
-            .iter()
-            .zip(0_u8..)
-            .find(|(one, _)| **one == word)
-            .expect("a word of the field")
-            .1;
-        self.with(name, &[f32::from(place)])
+    pub fn with_word(mut self, name: &str, word: &str) -> Self {
+        self.set_word(name, word)
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
+        self
     }
 
     /// The word of the field `name`, its first if it has no value.
@@ -356,7 +484,7 @@ impl Values {
     #[inline]
     #[must_use]
     pub fn word(&self, name: &str) -> &'static str {
-        let Kind::Word(words) = self.fields[self.place(name).0].kind else {
+        let Kind::Word(words) = self.fields[self.known(name)].kind else {
             panic!("not a field of words")
         };
         let [number] = self.get(name);
@@ -378,18 +506,18 @@ impl<T: PartialEq> PartialEq for Values<T> {
 /// Checked parameters of a model, with the fields they are made of.
 ///
 /// ```
-/// use hairis::{HairParams, ParamError};
+/// use hairis::HairParams;
 /// use hairis_variants::{Field, Parameters};
 /// let values = HairParams::red().values().with("beta", &[0.1, 0.0, 0.2]);
 /// let error = HairParams::from_values(&values).expect_err("a width of 0");
-/// assert_eq!(error, ParamError::Width("beta_tt", 0.0));
+/// assert_eq!(error.to_string(), "beta[1] must be a width in [1e-4, pi] rad, got 0");
 /// let (field, number) = Field::refused(HairParams::FIELDS, &error).expect("a field of the model");
 /// assert_eq!((field.name, number), ("beta", Some(1)));
 /// ```
-pub trait Parameters: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
+pub trait Parameters: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
     /// Every field, in the order of files: at most [`Values::MOST`] fields, and numbers in all.
     const FIELDS: &'static [Field];
-    /// Named parameters.
+    /// Named parameters. The figures of this project are those of the first.
     const PRESETS: &'static [(&'static str, Self)];
 
     /// The values. Of fields that stand for one another, only the one the parameters keep.
@@ -401,4 +529,11 @@ pub trait Parameters: Copy + Debug + Default + PartialEq + Send + Sync + 'static
     ///
     /// The first value out of its range; [`Field::refused`] finds its place.
     fn from_values(values: &Values) -> Result<Self, ParamError>;
+
+    /// The same fibre with every colour that scatters multiplied by `factor`; the energy-conserving fibre as it is.
+    ///
+    /// # Errors
+    ///
+    /// If `factor` is negative or not finite, or a product overflows.
+    fn scaled(&self, factor: f32) -> Result<Self, ParamError>;
 }

@@ -130,6 +130,15 @@ macro_rules! models {
                 }
             }
 
+            /// Values of the first of the [`presets`](Self::presets): the material that this project's figures are of.
+            #[inline]
+            #[must_use]
+            pub fn measured(self) -> Values {
+                match self {
+                    $(Self::$variant => <<$model as Model>::Params as Parameters>::PRESETS[0].1.values()),*
+                }
+            }
+
             /// Named parameters.
             #[inline]
             pub fn presets(self) -> impl Iterator<Item = (&'static str, Values)> {

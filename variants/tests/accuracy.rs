@@ -11,7 +11,7 @@ use hairis::model::{LobeEval, Model};
 use hairis::simd::Level;
 use hairis::{Bsdf, Eval, Hit, Lobe, Material, PerLobe, Sample};
 use hairis_reference::{
-    ChiangParameters, ChiangReference, KajiyaKayReference, LobeAt, Reference, Selection,
+    ChiangFormulas, ChiangReference, KajiyaKayReference, LobeAt, Reference, Selection,
 };
 use hairis_variants::KajiyaKay;
 use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParams, Shifts};
@@ -220,7 +220,7 @@ fn the_energy_conserving_fibre_is_as_accurate_as_its_widths_allow() {
         let params = ChiangParams::new(&desc).unwrap();
         let hit = hit(&mut draws);
         let bsdf = Material::new(&Chiang::MEAN, &params).prepare(hit);
-        let p = ChiangParameters::<f64>::from(&params);
+        let p = params.desc().map(f64::from);
         let wo = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
         let book = ChiangReference::prepare(&p, Selection::Mean, wo, f64::from(hit.h));
 
@@ -332,7 +332,7 @@ fn kajiya_and_kay_s_fibre_is_as_accurate_as_its_exponent_allows() {
             let hit = hit(&mut draws);
             let bsdf = Material::new(&KajiyaKay, &params).prepare(hit);
             let wo = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
-            let book = KajiyaKayReference::prepare(&(&params).into(), wo);
+            let book = KajiyaKayReference::prepare(&params.desc().map(f64::from), wo);
             let theta_o = wo[0].atan2(wo[1].hypot(wo[2]));
             let (_, samples, wi) = directions(&bsdf, &mut draws);
             let bounds_at = |d: [f64; 3]| {

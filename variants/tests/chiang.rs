@@ -29,7 +29,12 @@ fn double(hit: &Hit) -> [f64; 3] {
 impl<const BY_CHANNEL: bool> ChiangFibers<BY_CHANNEL> {
     fn formulas(params: &ChiangParams, hit: &Hit) -> ChiangReference<f64> {
         let h = f64::from(hit.h);
-        ChiangReference::prepare(&params.into(), Selection::of(BY_CHANNEL), double(hit), h)
+        ChiangReference::prepare(
+            &params.desc().map(f64::from),
+            Selection::of(BY_CHANNEL),
+            double(hit),
+            h,
+        )
     }
 }
 

@@ -18,7 +18,7 @@ fn params(desc: KajiyaKayDesc) -> KajiyaKayParams {
 
 fn formulas(params: &KajiyaKayParams, hit: &Hit) -> KajiyaKayReference<f64> {
     let wo = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
-    KajiyaKayReference::prepare(&params.into(), wo)
+    KajiyaKayReference::prepare(&params.desc().map(f64::from), wo)
 }
 
 impl KajiyaKayFibers {

@@ -5,10 +5,12 @@ mod accuracy;
 mod cauchy;
 mod chiang;
 mod family;
+mod json;
 mod kajiya_kay;
 mod lambert_fiber;
 mod params;
 mod registry;
 mod rows;
+mod values;
 
 use hairis_conformance::published::support;

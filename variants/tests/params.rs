@@ -1,6 +1,7 @@
 //! Parameters: what is refused, the artist's helpers, and the presets.
 
 use hairis::ParamError;
+use hairis::params::Rule;
 use hairis_variants::chiang::{ChiangDesc, ChiangParams, Shifts};
 use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc, KajiyaKayParams};
 
@@ -20,9 +21,10 @@ fn assert_range(
         .chain([least.next_down(), most.next_up()])
     {
         match build(value) {
-            Err(ParamError::Range(name, found, range)) => {
-                assert_eq!((name, range), (field, [least, most]), "{field} {value}");
-                assert_eq!(found.to_bits(), value.to_bits(), "{field}");
+            Err(error) => {
+                let rule = Rule::Range([least, most]);
+                assert_eq!((error.field(), error.rule()), (field, rule), "{value}");
+                assert_eq!(error.value().to_bits(), value.to_bits(), "{field}");
             }
             other => panic!("{field} {value}: {other:?}"),
         }
@@ -34,8 +36,9 @@ fn assert_rgb(field: &str, build: impl Fn([f32; 3]) -> Result<(), ParamError>) {
     assert_eq!(build([0.0, f32::MAX, 1.0]), Ok(()), "{field}");
     for value in FORBIDDEN.into_iter().chain([-f32::MIN_POSITIVE]) {
         match build([1.0, value, -1.0]) {
-            Err(ParamError::Intensity(name, 1, found)) => {
-                assert_eq!((name, found.to_bits()), (field, value.to_bits()), "{field}");
+            Err(error) => {
+                assert_eq!((error.field(), error.number()), (field, Some(1)));
+                assert_eq!(error.value().to_bits(), value.to_bits(), "{field}");
             }
             other => panic!("{field} {value}: {other:?}"),
         }
@@ -107,7 +110,7 @@ fn helpers_refuse_by_field_and_value() {
         }
         let width = KajiyaKayDesc::default().with_width_deg(value);
         assert!(
-            matches!(width, Err(ParamError::Degrees("width_deg", ..))),
+            width.is_err_and(|error| error.field() == "width_deg"),
             "{value}: {width:?}"
         );
     }
@@ -117,7 +120,7 @@ fn helpers_refuse_by_field_and_value() {
     }
     .with_color([0.5; 3]);
     assert!(
-        matches!(unset, Err(ParamError::Range("beta_n", ..))),
+        unset.is_err_and(|error| error.field() == "beta_n"),
         "{unset:?}"
     );
     assert!(

@@ -4,6 +4,7 @@ use crate::support::{Draws, direction, lanes_of, packet};
 use core::fmt::Debug;
 use glam::Vec3;
 use hairis::columns::EvalColumns;
+use hairis::params::Rule;
 use hairis::simd::Level;
 use hairis::{HairParams, Hit, Lobe, LobeMask, Material, Material8, ParamError};
 use hairis_variants::{
@@ -60,10 +61,15 @@ fn fields_hold<P: Parameters>() {
             let error = P::from_values(&base.with(field.name, &bad)).expect_err(field.name);
             let (found, place) = Field::refused(P::FIELDS, &error).expect("a field of the model");
             assert_eq!(found.name, field.name, "{error}");
-            assert!(
-                place.is_none() || place == Some(number),
-                "{error}: number {place:?}"
-            );
+            let several = field.kind.width() > 1;
+            assert_eq!(place, several.then_some(number), "{error}");
+            // The rule that refuses is the one that the field states.
+            assert_eq!(Some(error.rule()), field.rule, "{error}");
+            assert!(!field.doc.is_empty(), "{}", field.name);
+            for end in field.range().expect("a field of numbers") {
+                let values = base.with(field.name, &vec![end; field.kind.width()]);
+                P::from_values(&values).expect("both ends of a range are accepted");
+            }
         }
     }
 }
@@ -79,17 +85,17 @@ fn parameters_are_their_fields() {
 fn a_field_takes_the_place_of_another() {
     let melanin = ChiangParams::default()
         .values()
-        .without("sigma_a")
         .with("melanin", &[0.3, 0.0]);
+    assert!(!melanin.has("sigma_a"), "one of the group at a time");
     assert_eq!(
         ChiangParams::from_values(&melanin),
         Ok(ChiangParams::blond())
     );
     let refused = ChiangParams::from_values(&melanin.with("melanin", &[0.3, -1.0]));
-    assert_eq!(refused, Err(ParamError::Scalar("pheomelanin", -1.0)));
-    let amount = melanin
-        .without("melanin")
-        .with("melanin_amount", &[0.7, 0.6]);
+    let error = ParamError::new("melanin", Some(1), Rule::NotNegative, -1.0);
+    assert_eq!(refused, Err(error));
+    let amount = melanin.with("melanin_amount", &[0.7, 0.6]);
+    assert!(!amount.has("melanin"), "one of the group at a time");
     let desc = ChiangDesc::default().with_melanin_amount(0.7, 0.6);
     assert_eq!(
         ChiangParams::from_values(&amount),

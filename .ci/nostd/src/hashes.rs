@@ -65,7 +65,7 @@ impl<M: Model<Params: Parameters>> Hits<M> {
         let narrow =
             M::Params::FIELDS
                 .iter()
-                .fold(M::Params::default().values(), |values, field| {
+                .fold(M::Params::PRESETS[0].1.values(), |values, field| {
                     match (field.narrow, field.kind.width()) {
                         (Some(x), width) => values.with(field.name, &[x; 4][..width]),
                         (None, _) => values,

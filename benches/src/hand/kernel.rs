@@ -44,13 +44,11 @@ impl Constants {
         let wo = wo.map(f64::from);
         let plane = wo[1].hypot(wo[2]);
         let half_theta_o = 0.5 * wo[0].atan2(plane);
-        let beta = [desc.beta_r, desc.beta_tt, desc.beta_trt].map(f64::from);
-        let shift = [desc.alpha_r, desc.alpha_tt, desc.alpha_trt]
-            .map(|alpha| half_theta_o - f64::from(alpha));
+        let beta = desc.beta.map(f64::from);
+        let shift = desc.alpha.map(|alpha| half_theta_o - f64::from(alpha));
         let gamma = [desc.gamma_tt, desc.gamma_g].map(f64::from);
-        let (phi_g, intensity_g) = (f64::from(desc.phi_g), f64::from(desc.intensity_g));
-        let colors = [desc.intensity_r, desc.intensity_tt, desc.intensity_trt]
-            .map(|color| color.map(f64::from));
+        let (phi_g, intensity_g) = (f64::from(desc.phi_g), f64::from(desc.i_g));
+        let colors = [desc.i_r, desc.i_tt, desc.i_trt].map(|color| color.map(f64::from));
         let mean = colors.map(|color| color.iter().sum::<f64>() / 3.0);
 
         let root = 4.0 * (2.0 * PI).sqrt();

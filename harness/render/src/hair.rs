@@ -13,7 +13,7 @@ pub const UNIFORM: &str = "uniform";
 pub const PUBLISHED: &str = "published";
 /// The word for the samplers that are made for the bells of a model.
 pub const MATCHED: &str = "matched";
-/// A preset beside those of the models: the published model's default set with the narrow lobes of glossy hair.
+/// A preset beside those of the models: the published model's `bright` with the narrow lobes of glossy hair.
 pub const GLOSSY: &str = "glossy";
 
 /// Largest mean albedo with which paths converge as they are, where single directions return more
@@ -253,10 +253,11 @@ pub fn check_paths(
 /// The parameters of a preset.
 fn preset_of(id: ModelId, name: &str) -> Option<Values> {
     if name != GLOSSY {
-        return id
-            .presets()
-            .find(|(preset, _)| *preset == name)
-            .map(|(_, values)| values);
+        // The first is the default of this program, whatever its name.
+        let mut presets = id.presets().enumerate();
+        return presets
+            .find(|(place, (preset, _))| *preset == name || (*place == 0 && name == "default"))
+            .map(|(_, (_, values))| values);
     }
     let published = ModelId::find("gaussian", None)?;
     if id.fields() != published.fields() {
@@ -264,7 +265,7 @@ fn preset_of(id: ModelId, name: &str) -> Option<Values> {
     }
     let deg = |angle: f32| angle.to_radians();
     let values = id
-        .defaults()
+        .measured()
         .with("beta", &[deg(2.5), deg(1.25), deg(5.0)])
         .with("gamma_tt", &[deg(5.0)]);
     Some(values.with("gamma_g", &[deg(5.0)]).with("i_g", &[5.0]))

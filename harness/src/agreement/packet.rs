@@ -54,7 +54,7 @@ impl Packet {
         index: u64,
     ) -> Result<Self, ParamError> {
         let mut from = Independent::new(seed, stream_id(&[0xa9ee, region as u64, index]));
-        let values = [(); 8].map(|()| random(model.defaults(), &mut from));
+        let values = [(); 8].map(|()| random(model.measured(), &mut from));
         let wo = core::array::from_fn(|_| match region {
             // Half of the viewers look along the fibre's axis, too.
             Region::Axis if from.next_f64() < 0.5 => near_axis(&mut from),

@@ -9,7 +9,6 @@ use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::params::HairDesc;
 use hairis::{HairParams, ParamError};
-use hairis_reference::Parameters;
 
 const DENSITY: Statement = Statement {
     id: "misprint-glint-density",
@@ -36,16 +35,16 @@ const GAPS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 
 /// Every pair of widths and half angles of the grid's glints, of the stronger kind, without R and, unless `tt`, without TT.
 fn glints(tt: bool) -> Result<Vec<HairParams>, ParamError> {
-    let base = *HairParams::default().desc();
+    let base = *HairParams::bright().desc();
     let (grid, none) = (Grid::FULL, [0.0; 3]);
     let strongest = grid.intensity_g.iter().copied().fold(0.0, f32::max);
     let hair = |gamma_g: &f32, phi_g: &f32| {
         HairParams::new(&HairDesc {
             gamma_g: gamma_g.to_radians(),
             phi_g: phi_g.to_radians(),
-            intensity_g: strongest,
-            intensity_r: none,
-            intensity_tt: if tt { base.intensity_tt } else { none },
+            i_g: strongest,
+            i_r: none,
+            i_tt: if tt { base.i_tt } else { none },
             ..base
         })
     };
@@ -57,7 +56,7 @@ fn glints(tt: bool) -> Result<Vec<HairParams>, ParamError> {
 
 /// Total of the printed density, less 1.
 fn excess(params: &HairParams) -> Bounded {
-    let glint = whole_glint(&Parameters::from(params));
+    let glint = whole_glint(&params.desc().map(f64::from));
     let printed = |phi: f64| [glint.pdf(phi) / glint.cdf(FRAC_PI_2)];
     let d = params.desc();
     let [total] = integrals(
@@ -188,7 +187,7 @@ mod tests {
 
     #[test]
     fn the_printed_density_exceeds_one_by_what_lies_beyond() {
-        let base = *HairParams::default().desc();
+        let base = *HairParams::bright().desc();
         let params = HairParams::new(&HairDesc {
             phi_g: 0.61,
             gamma_g: 0.17,

@@ -6,8 +6,9 @@ use super::hair::Longitudinal;
 use crate::study::Grid;
 use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
+use hairis::params::HairDesc;
 use hairis::{HairParams, Lobe, ParamError};
-use hairis_reference::{HairReference, Parameters, Reference, Shape};
+use hairis_reference::{HairReference, Reference, Shape};
 
 /// The bound is a hundredth of an error of 1%.
 const STATEMENT: Statement = Statement {
@@ -64,7 +65,7 @@ impl Longitudinal {
 }
 
 /// Mean intensity times azimuthal integral of R, TT and of TRT with its glints.
-fn areas(shape: Shape, p: &Parameters<f64>) -> [f64; 3] {
+fn areas(shape: Shape, p: &HairDesc<f64>) -> [f64; 3] {
     let mean = |rgb: [f64; 3]| rgb.iter().sum::<f64>() / 3.0;
     let area = |centre: f64, width: f64| {
         let [half] = integrals(
@@ -75,17 +76,17 @@ fn areas(shape: Shape, p: &Parameters<f64>) -> [f64; 3] {
         );
         2.0 * half.value
     };
-    let trt = 4.0 + p.intensity_g * area(p.phi_g, p.gamma_g);
+    let trt = 4.0 + p.i_g * area(p.phi_g, p.gamma_g);
     [
-        4.0 * mean(p.intensity_r),
-        area(PI, p.gamma_tt) * mean(p.intensity_tt),
-        trt * mean(p.intensity_trt),
+        4.0 * mean(p.i_r),
+        area(PI, p.gamma_tt) * mean(p.i_tt),
+        trt * mean(p.i_trt),
     ]
 }
 
 /// The share of the energy of a hair that is discarded.
 fn share_of(shape: Shape, params: &HairParams, theta_o: f64) -> Bounded {
-    let p = Parameters::<f64>::from(params);
+    let p = params.desc().map(f64::from);
     let areas = areas(shape, &p);
     let energy = |reach: f64| -> Bounded {
         let of_lobe = |lobe: usize| Longitudinal::of(&p, lobe, theta_o).energy(shape, reach);
@@ -99,7 +100,7 @@ fn share_of(shape: Shape, params: &HairParams, theta_o: f64) -> Bounded {
 /// The share of the samples of a hair that are discarded.
 fn discarded(params: &HairParams, theta_o: f64) -> f64 {
     let wo = [theta_o.sin(), theta_o.cos(), 0.0];
-    let hair = HairReference::prepare(&Parameters::<f64>::from(params), Shape::Gaussian, wo);
+    let hair = HairReference::prepare(&params.desc().map(f64::from), Shape::Gaussian, wo);
     let shares = hair.probabilities();
     let of = |lobe: Lobe| {
         hair.cdf_theta(lobe, CAP - FRAC_PI_2) + 1.0 - hair.cdf_theta(lobe, FRAC_PI_2 - CAP)
@@ -206,8 +207,8 @@ mod tests {
 
     #[test]
     fn beyond_the_cap_it_is_the_reference() {
-        let params = HairParams::default();
-        let p = Parameters::<f64>::from(&params);
+        let params = HairParams::bright();
+        let p = params.desc().map(f64::from);
         for (theta_o, delta) in [(0.3_f64, 2e-5_f64), (-1.2, 0.4), (1.5, 1.1)] {
             let hair =
                 HairReference::prepare(&p, Shape::Cauchy, [theta_o.sin(), theta_o.cos(), 0.0]);
@@ -236,7 +237,7 @@ mod tests {
 
     #[test]
     fn few_samples_are_discarded() {
-        let got = discarded(&HairParams::default(), 0.0);
+        let got = discarded(&HairParams::bright(), 0.0);
         // Densities of theta_i at the axis are near 0.05 per rad.
         assert!((1e-7..1e-5).contains(&got), "{got}");
     }

@@ -5,10 +5,11 @@ use crate::efficiency::with_beta;
 use crate::study::Grid;
 use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
+use hairis::params::HairDesc;
 use hairis::{HairParams, Lobe, PerLobe};
 use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::quadrature::{Tolerance, bell_breakpoints, integrate_rectangle};
-use hairis_reference::{CauchyDensity, HairReference, Parameters, Reference};
+use hairis_reference::{CauchyDensity, HairReference, Reference};
 
 /// The interval of `theta_h` as `theta_i` runs over all inclinations, rad.
 pub(super) fn theta_h_interval(theta_o: f64) -> [f64; 2] {
@@ -25,7 +26,7 @@ pub(super) struct Longitudinal {
 
 impl Longitudinal {
     /// The longitudinal term of R, TT or TRT, by slot.
-    pub(super) fn of(p: &Parameters<f64>, lobe: usize, theta_o: f64) -> Self {
+    pub(super) fn of(p: &HairDesc<f64>, lobe: usize, theta_o: f64) -> Self {
         Self {
             alpha: p.alpha[lobe],
             beta: p.beta[lobe],
@@ -52,9 +53,9 @@ pub(super) fn longitudinal_grid() -> Vec<Longitudinal> {
     let widths = Grid::FULL
         .beta_r_deg
         .iter()
-        .filter_map(|beta_r| with_beta(&HairParams::default(), *beta_r).ok());
+        .filter_map(|beta_r| with_beta(&HairParams::bright(), *beta_r).ok());
     let of_width = |params: HairParams| {
-        let p = Parameters::from(&params);
+        let p = params.desc().map(f64::from);
         let theta_o = Grid::FULL
             .theta_o_deg
             .iter()
@@ -65,7 +66,7 @@ pub(super) fn longitudinal_grid() -> Vec<Longitudinal> {
 }
 
 /// A glint's density of `|phi|` on [0, pi]; as printed, without an end, it is this over its cdf at a right angle.
-pub(super) fn whole_glint(p: &Parameters<f64>) -> CauchyDensity<f64> {
+pub(super) fn whole_glint(p: &HairDesc<f64>) -> CauchyDensity<f64> {
     CauchyDensity::new(p.phi_g, p.gamma_g, 0.0, PI)
 }
 
@@ -79,7 +80,7 @@ fn mixture(shares: &PerLobe<f64>, of: &PerLobe<f64>) -> f64 {
 
 /// A hair of a model seen from an inclination.
 pub(super) struct Hair {
-    parameters: Parameters<f64>,
+    parameters: HairDesc<f64>,
     oracle: HairReference<f64>,
     theta_o: f64,
 }
@@ -139,7 +140,7 @@ impl HairFigures {
 
 impl Hair {
     pub(super) fn new(model: ModelKind, params: &HairParams, theta_o: f64) -> Self {
-        let parameters = Parameters::from(params);
+        let parameters = params.desc().map(f64::from);
         let wo = fibre_direction(theta_o, 0.0).to_array();
         Self {
             parameters,
@@ -270,7 +271,7 @@ mod tests {
 
     #[test]
     fn variances_are_those_of_the_whole_sphere() {
-        let params = HairParams::default();
+        let params = HairParams::bright();
         for model in ModelKind::ALL {
             for theta_o_deg in [0.0_f64, 45.0, 75.0] {
                 let found = Hair::new(model, &params, theta_o_deg.to_radians()).found();
@@ -288,11 +289,11 @@ mod tests {
     #[test]
     fn a_lobe_alone_loses_what_its_mass_says() {
         // With one lobe the printed density is the right one times its mass: the second moment grows by its inverse.
-        let mut desc = *HairParams::default().desc();
-        (desc.intensity_tt, desc.intensity_trt) = ([0.0; 3], [0.0; 3]);
+        let mut desc = *HairParams::bright().desc();
+        (desc.i_tt, desc.i_trt) = ([0.0; 3], [0.0; 3]);
         let params = HairParams::new(&desc).expect("accepted");
         let found = Hair::new(ModelKind::Gaussian, &params, 0.5).found();
-        let mass = Longitudinal::of(&Parameters::from(&params), 0, 0.5).printed_mass();
+        let mass = Longitudinal::of(&params.desc().map(f64::from), 0, 0.5).printed_mass();
         assert!(
             (found.lost - (1.0 - mass)).abs() < 1e-12 && mass < 0.99,
             "{found:?} {mass}"

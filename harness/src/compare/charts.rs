@@ -18,7 +18,7 @@ const POINTS: usize = 2000;
 
 /// The Gaussian and the Cauchy bells, the models made of them, and where samples go: the paper's figure 5.
 pub(super) fn models(of: &Comparison) -> Vec<Drawing> {
-    let (params, theta_o) = (HairParams::default(), 20_f64.to_radians());
+    let (params, theta_o) = (HairParams::bright(), 20_f64.to_radians());
     let mut numbers = SequenceKind::Halton.source(of.settings.seed, 0, 3, POINTS);
     let xi: Vec<[f32; 3]> = (0..POINTS).map(|_| numbers.next_xi_f32()).collect();
     let mut all = figures::bells().to_vec();

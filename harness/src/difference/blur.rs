@@ -296,7 +296,7 @@ mod tests {
         let kernel = |cos: f64| {
             kappa / (2.0 * PI * (1.0 - (-2.0 * kappa).exp())) * (kappa * (cos - 1.0)).exp()
         };
-        let view = ViewedHair::new(&HairParams::default(), 0.9);
+        let view = ViewedHair::new(&HairParams::bright(), 0.9);
         let (rule, blur) = (view.rule(12), blur());
         for kind in [Kind::GAUSSIAN, Kind::cauchy(1.0)] {
             let values = rule.values(&view, kind);

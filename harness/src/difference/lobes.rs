@@ -10,8 +10,9 @@
 use core::array;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::HairParams;
+use hairis::params::HairDesc;
 use hairis_instruments::quadrature::GaussLegendre;
-use hairis_reference::{Parameters, Shape};
+use hairis_reference::Shape;
 
 /// The products of `S cos theta_i`.
 pub(super) const TERMS: usize = 3;
@@ -42,7 +43,7 @@ impl Kind {
 /// Hair seen from an inclination.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ViewedHair {
-    parameters: Parameters<f64>,
+    parameters: HairDesc<f64>,
     theta_o: f64,
 }
 
@@ -74,7 +75,7 @@ impl ViewedHair {
     /// The hair seen from `theta_o`, in rad, within (-pi/2, pi/2).
     pub(super) fn new(params: &HairParams, theta_o: f64) -> Self {
         Self {
-            parameters: Parameters::from(params),
+            parameters: params.desc().map(f64::from),
             theta_o,
         }
     }
@@ -90,13 +91,8 @@ impl ViewedHair {
         let common = theta_i.cos() / (cos_theta_d * cos_theta_d);
         let [m_r, m_tt, m_trt] =
             [0, 1, 2].map(|l| common * kind.shape.bell(p.beta[l], theta_h - p.alpha[l]));
-        let [r, tt, trt] = [p.intensity_r, p.intensity_tt, p.intensity_trt]
-            .map(|rgb| rgb.iter().sum::<f64>() / 3.0);
-        [
-            r * m_r + trt * m_trt,
-            tt * m_tt,
-            trt * p.intensity_g * m_trt,
-        ]
+        let [r, tt, trt] = [p.i_r, p.i_tt, p.i_trt].map(|rgb| rgb.iter().sum::<f64>() / 3.0);
+        [r * m_r + trt * m_trt, tt * m_tt, trt * p.i_g * m_trt]
     }
 
     /// The factors that depend on `phi`, which is in [-pi, pi].
@@ -229,7 +225,7 @@ mod tests {
             let theta_o = 1.5 * (2.0 * xi.next_f64() - 1.0);
             let view = ViewedHair::new(&hair, theta_o);
             for kind in [Kind::GAUSSIAN, Kind::cauchy(1.0), Kind::cauchy(0.8)] {
-                let parameters = Parameters::from(&hair).with_width_factor(kind.factor);
+                let parameters = hair.desc().map(f64::from).with_width_factor(kind.factor);
                 let oracle = HairReference::prepare(
                     &parameters,
                     kind.shape,

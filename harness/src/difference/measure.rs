@@ -243,10 +243,10 @@ mod tests {
         // R alone, so narrow that nothing else changes across it: the norms are those of two bells on a line.
         let black = [0.0; 3];
         let desc = HairDesc {
-            beta_r: 0.002,
-            intensity_tt: black,
-            intensity_trt: black,
-            ..HairDesc::default()
+            beta: [0.002; 3],
+            i_tt: black,
+            i_trt: black,
+            ..*HairParams::bright().desc()
         };
         let hair = HairValues::new(
             ViewedHair::new(&HairParams::new(&desc).expect("accepted"), 0.3),

@@ -6,11 +6,12 @@ use core::array;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::{DVec3, Vec3};
 use hairis::HairParams;
+use hairis::params::HairDesc;
 use hairis::simd::f32x8;
 use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::quadrature::{SphereIntegrator, Tolerance};
 use hairis_instruments::sequence::{XiSource, to_unit_f32};
-use hairis_reference::{Parameters, Reference};
+use hairis_reference::Reference;
 
 /// A model with its parameters, seen from `wo`.
 pub(super) struct Case {
@@ -42,7 +43,7 @@ impl Case {
     pub(super) fn new(model: ModelKind, params: &HairParams, theta_o_deg: f64) -> Self {
         let wo = fibre_direction(theta_o_deg.to_radians(), PHI_O_DEG.to_radians()).as_vec3();
         // The oracle gets the same rounded direction.
-        let (parameters, exact) = (Parameters::<f64>::from(params), wo.as_dvec3());
+        let (parameters, exact) = (params.desc().map(f64::from), wo.as_dvec3());
         let estimators = Sampler::ALL.map(|sampler| {
             let formulas = model.formulas(sampler.bands());
             let oracle = formulas.prepare(&parameters, exact.to_array());
@@ -128,7 +129,7 @@ fn colours(channels: &[f32x8; 3]) -> [[f64; 3]; 8] {
 }
 
 /// Breakpoints at each bell, at the seam of `phi` and at the glint density's end.
-fn integrator(p: &Parameters<f64>, wo: DVec3) -> SphereIntegrator {
+fn integrator(p: &HairDesc<f64>, wo: DVec3) -> SphereIntegrator {
     let theta_o = wo.x.atan2(wo.y.hypot(wo.z));
     let phi_o = wo.z.atan2(wo.y);
     let mut sphere = SphereIntegrator::new().with_tolerance(Tolerance::relative(1e-7));

@@ -240,7 +240,7 @@ pub(super) fn reference_v(
     v: Estimate,
 ) -> ReferenceV {
     let [quadrature, quadrature_luminance] = exact_variance(case, sampler).v;
-    let is_default = config.params == HairParams::default();
+    let is_default = config.params == HairParams::bright();
     let recorded = recorded_v(case.model, sampler, case.theta_o_deg).filter(|_| is_default);
     let rounded = Estimate {
         standard_error: v.standard_error.hypot(ROUNDING),

@@ -41,7 +41,7 @@ fn small(map: &Environment) -> EfficiencyConfig<'_> {
 fn cases() -> impl Iterator<Item = (Case, Sampler)> {
     ModelKind::ALL.into_iter().flat_map(|model| {
         SAMPLERS.into_iter().flat_map(move |sampler| {
-            THETA_O_DEG.map(|theta_o| (Case::new(model, &HairParams::default(), theta_o), sampler))
+            THETA_O_DEG.map(|theta_o| (Case::new(model, &HairParams::bright(), theta_o), sampler))
         })
     })
 }
@@ -125,7 +125,7 @@ fn every_estimator_agrees_with_quadrature() {
     let mut worst = 0.0_f64;
     for (k, light) in lights.into_iter().enumerate() {
         for (model, theta_o) in ModelKind::ALL.into_iter().zip(theta_o) {
-            let case = Case::new(model, &HairParams::default(), theta_o);
+            let case = Case::new(model, &HairParams::bright(), theta_o);
             let reference = by_quadrature(&case, light);
             for (t, technique) in Technique::all().enumerate() {
                 // 1e6 samples hit the sun about 480 times.
@@ -161,7 +161,7 @@ fn every_estimator_agrees_with_quadrature() {
 
 #[test]
 fn the_sun_is_for_light_sampling_and_the_rest_for_both() {
-    let case = Case::new(ModelKind::Gaussian, &HairParams::default(), 45.0);
+    let case = Case::new(ModelKind::Gaussian, &HairParams::bright(), 45.0);
     let v = |technique: Technique| {
         let tally = independent(&case, technique, lights(None)[SUN], [41, 0], 100_000);
         tally.moments.relative_variance().value * technique.samples_each() as f64
@@ -314,7 +314,7 @@ fn maps_of_few_texels_raise_no_alarm() {
     }
     // The one texel is a constant light, whose integral is known.
     let one = Environment::from_pixels("one", 1, 1, vec![[1.0; 3]]).expect("valid");
-    let case = Case::new(ModelKind::Gaussian, &HairParams::default(), 45.0);
+    let case = Case::new(ModelKind::Gaussian, &HairParams::bright(), 45.0);
     let [got, exact] = [
         reference::of_environment(&case, &one, 128, 16, 1),
         by_quadrature(&case, &Constant),
@@ -329,10 +329,10 @@ fn maps_of_few_texels_raise_no_alarm() {
 #[test]
 fn black_hair_and_black_maps_are_no_failures() {
     let black = HairDesc {
-        intensity_r: [0.0; 3],
-        intensity_tt: [0.0; 3],
-        intensity_trt: [0.0; 3],
-        ..HairDesc::default()
+        i_r: [0.0; 3],
+        i_tt: [0.0; 3],
+        i_trt: [0.0; 3],
+        ..*HairParams::bright().desc()
     };
     let map = Environment::from_pixels("black", 4, 2, vec![[0.0; 3]; 8]).expect("valid");
     let params = HairParams::new(&black).expect("black is legal");
@@ -360,7 +360,7 @@ fn black_hair_and_black_maps_are_no_failures() {
     );
     assert!(result.check.passed(), "{:#?}", result.check);
     serde_json::to_string(&result).expect("serialises");
-    let case = Case::new(ModelKind::Gaussian, &HairParams::default(), 45.0);
+    let case = Case::new(ModelKind::Gaussian, &HairParams::bright(), 45.0);
     let reference = reference::of_environment(&case, &map, 8, 1, 0);
     for technique in Technique::all() {
         let tally = independent(&case, technique, &map, [61, 0], 1_000);

@@ -69,7 +69,7 @@ impl RaySubject {
         let hit = Hit::new(viewer(pose), OFFSETS[pose]);
         let bsdf = self
             .id
-            .material(&self.id.defaults())
+            .material(&self.id.measured())
             .expect("defaults are accepted");
         Scatter::at(bsdf.prepare(hit), self.is_uniform)
     }
@@ -81,7 +81,7 @@ impl RaySubject {
     /// Never: default parameters are within their ranges.
     pub(super) fn formulas(self, pose: usize) -> Box<dyn Reference<f64>> {
         let wo = viewer(pose).as_dvec3().to_array();
-        reference(self.id, &self.id.defaults(), wo, f64::from(OFFSETS[pose]))
+        reference(self.id, &self.id.measured(), wo, f64::from(OFFSETS[pose]))
             .expect("defaults are accepted")
     }
 }

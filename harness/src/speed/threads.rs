@@ -82,7 +82,7 @@ pub(super) fn run(model: ModelId, inputs: &TimedInputs) -> Result<Vec<ThreadsRes
     let Ok(pools) = pools else {
         return Ok(Vec::new());
     };
-    let bsdf = model.material(&model.defaults())?.prepare(inputs.wo[0]);
+    let bsdf = model.material(&model.measured())?.prepare(inputs.wo[0]);
     let wi: Vec<[f32; 3]> = inputs.wi.iter().map(|wi| wi.to_array()).collect();
     let eval = time(&pools, &wi, |chunk: &mut Chunk<4>| {
         let [r, g, b, pdf] = chunk.out.each_mut().map(Vec::as_mut_slice);

@@ -162,12 +162,12 @@ impl Cell {
     ///
     /// Never for the cells of [`Grid::FULL`] and [`Grid::QUICK`]: all of them are within the ranges accepted.
     pub fn params(&self) -> Result<HairParams, ParamError> {
-        let base = with_beta(&HairParams::default(), self.beta_r_deg)?;
+        let base = with_beta(&HairParams::bright(), self.beta_r_deg)?;
         HairParams::new(&HairDesc {
             gamma_tt: self.gamma_tt_deg.to_radians(),
             gamma_g: self.gamma_g_deg.to_radians(),
             phi_g: self.phi_g_deg.to_radians(),
-            intensity_g: self.intensity_g,
+            i_g: self.intensity_g,
             ..*base.desc()
         })
     }
@@ -233,18 +233,18 @@ mod tests {
             quick.iter().all(|cell| full.contains(&cell.values())),
             "cells of its own"
         );
-        let default = HairParams::default();
+        let default = HairParams::bright();
         let near = |a: f32, b: f32| (a - b).abs() <= 1e-6;
         let is_default = |cell: &&Cell| {
             let params = cell.params().expect("accepted");
             let (a, b) = (params.desc(), default.desc());
-            near(a.beta_r, b.beta_r)
-                && near(a.beta_tt, b.beta_tt)
-                && near(a.beta_trt, b.beta_trt)
+            near(a.beta[0], b.beta[0])
+                && near(a.beta[1], b.beta[1])
+                && near(a.beta[2], b.beta[2])
                 && near(a.gamma_tt, b.gamma_tt)
                 && near(a.gamma_g, b.gamma_g)
                 && near(a.phi_g, b.phi_g)
-                && a.intensity_g == b.intensity_g
+                && a.i_g == b.i_g
         };
         assert_eq!(
             quick.iter().filter(is_default).count(),
@@ -259,14 +259,14 @@ mod tests {
         let desc = params.desc();
         let deg = |rad: f32| f64::from(rad.to_degrees());
         for (got, want) in [
-            (desc.alpha_r, -7.5),
-            (desc.alpha_tt, 3.75),
-            (desc.alpha_trt, 11.25),
+            (desc.alpha[0], -7.5),
+            (desc.alpha[1], 3.75),
+            (desc.alpha[2], 11.25),
         ] {
             assert!((deg(got) - want).abs() < 1e-5, "{got} for {want}");
         }
         assert_eq!(
-            [desc.intensity_r, desc.intensity_tt, desc.intensity_trt],
+            [desc.i_r, desc.i_tt, desc.i_trt],
             [[0.3; 3], [0.8, 0.6, 0.4], [0.7, 0.5, 0.3]]
         );
     }

@@ -226,7 +226,7 @@ fn directions(from: &mut Independent) -> Vec<Vec3x8> {
     let material = material(
         ModelKind::Gaussian,
         Sampler::Published,
-        &HairParams::default(),
+        &HairParams::bright(),
     );
     let of_packet = |_| {
         let points = Points::draw(from);
@@ -259,7 +259,7 @@ fn pass<'a>(
     points: &[Points],
     per_point: usize,
 ) -> Box<dyn Pass + 'a> {
-    let material = material(model, sampler, &HairParams::default());
+    let material = material(model, sampler, &HairParams::bright());
     task(points, move |points| {
         let bsdf = material.prepare8(&points.wo);
         let uniform = |xi: &[f32x8; 3]| {

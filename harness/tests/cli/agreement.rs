@@ -209,9 +209,9 @@ fn is_edge(sample: &Value) -> bool {
 #[test]
 fn black_hair_scatters_nothing() {
     let (_, mut case) = cases(4, 1)[0];
-    case.desc.intensity_r = [0.0; 3];
-    case.desc.intensity_tt = [0.0; 3];
-    case.desc.intensity_trt = [0.0; 3];
+    case.desc.i_r = [0.0; 3];
+    case.desc.i_tt = [0.0; 3];
+    case.desc.i_trt = [0.0; 3];
     for (path, sampler) in PATHS
         .into_iter()
         .flat_map(|path| SAMPLERS.map(|sampler| (path, sampler)))
@@ -249,10 +249,10 @@ fn lobes_without_energy_are_never_drawn() {
     let mut source = Cases::new(5);
     let mut requests = Vec::new();
     for (model, mut case) in cases(6, 120) {
-        case.desc.intensity_r = [0.0; 3];
-        case.desc.intensity_tt = [0.2; 3];
-        case.desc.intensity_trt = [0.2; 3];
-        case.desc.intensity_g = 0.0;
+        case.desc.i_r = [0.0; 3];
+        case.desc.i_tt = [0.2; 3];
+        case.desc.i_trt = [0.2; 3];
+        case.desc.i_g = 0.0;
         requests
             .extend(SAMPLERS.map(|sampler| with_xi(request(sampler, model, &case), source.xi())));
     }

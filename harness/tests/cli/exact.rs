@@ -2,10 +2,13 @@
 
 use super::{eval, numbers};
 use glam::DVec3;
+use hairis::params::HairDesc;
 use hairis_reference::{
-    ChiangConstants, ChiangParameters, HairReference, KajiyaKayConstants, KajiyaKayParameters,
-    MatchedReference, Parameters, Reference, Selection, Shape,
+    ChiangConstants, HairReference, KajiyaKayConstants, MatchedReference, Reference, Selection,
+    Shape,
 };
+use hairis_variants::ChiangDesc;
+use hairis_variants::KajiyaKayDesc;
 use hairis_variants::chiang::Shifts;
 use hairis_variants::kajiya_kay::Form;
 use serde_json::{Value, json};
@@ -51,23 +54,23 @@ fn assert_exact(line: &Value, point: &impl Reference<f64>) {
 
 #[test]
 fn the_published_model() {
-    let p = Parameters {
+    let p = HairDesc {
         alpha: [-0.13, 0.065, 0.2],
         beta: [0.13, 0.41, 0.26],
         gamma_tt: 0.7,
         gamma_g: 0.17,
         phi_g: 0.61,
-        intensity_r: [0.3, 0.31, 0.32],
-        intensity_tt: [0.8, 0.6, 0.4],
-        intensity_trt: [0.7, 0.5, 0.3],
-        intensity_g: 0.55,
+        i_r: [0.3, 0.31, 0.32],
+        i_tt: [0.8, 0.6, 0.4],
+        i_trt: [0.7, 0.5, 0.3],
+        i_g: 0.55,
     };
     let line = |model: &str, sampler: &str| {
         json!({
             "model": model, "sampler": sampler, "wo": WO,
             "params": {
                 "alpha": p.alpha, "beta": p.beta, "gamma_tt": p.gamma_tt, "gamma_g": p.gamma_g, "phi_g": p.phi_g,
-                "i_r": p.intensity_r, "i_tt": p.intensity_tt, "i_trt": p.intensity_trt, "i_g": p.intensity_g
+                "i_r": p.i_r, "i_tt": p.i_tt, "i_trt": p.i_trt, "i_g": p.i_g
             }
         })
     };
@@ -89,7 +92,7 @@ fn kajiya_kay() {
         ("reciprocal", Form::Reciprocal),
         ("published", Form::Published),
     ] {
-        let p = KajiyaKayParameters {
+        let p = KajiyaKayDesc {
             kd: [0.3, 0.2, 0.1],
             ks: [0.15, 0.14, 0.13],
             exponent: 80.1,
@@ -124,7 +127,7 @@ fn chiang_by_absorption_melanin_and_color() {
         ("melanin_amount", json!([0.7, 0.4]), of_amount),
         ("color", json!(color), of_color),
     ] {
-        let p = ChiangParameters {
+        let p = ChiangDesc {
             beta_m: 0.3,
             beta_n,
             tilt: 0.03,

@@ -10,9 +10,10 @@ use crate::{LobeAt, Real, Reference, ReferenceSample};
 use azimuth::Logistic;
 use cone::Cone;
 use hairis::{Lobe, PerLobe};
+use hairis_variants::ChiangDesc;
 
 pub use bessel::bessel_i0_scaled;
-pub use parameters::{ChiangParameters, Selection};
+pub use parameters::{ChiangFormulas, Selection};
 
 /// The lobe of all paths with two and more internal reflections, TRRT and what follows.
 const REST: Lobe = Lobe::slot(3);
@@ -31,7 +32,7 @@ const REST: Lobe = Lobe::slot(3);
 /// ```
 /// use hairis_reference::{ChiangReference, Reference, Selection};
 /// use hairis_variants::ChiangParams;
-/// let parameters = (&ChiangParams::brown()).into();
+/// let parameters = ChiangParams::brown().desc().map(f64::from);
 /// let fiber = ChiangReference::<f64>::prepare(&parameters, Selection::Mean, [0.0, 1.0, 0.0], 0.4);
 /// let drawn = fiber.sample([0.1, 0.4, 0.7]);
 /// assert!((fiber.eval_pdf(drawn.wi).1 / drawn.pdf - 1.0).abs() < 1e-9);
@@ -65,7 +66,7 @@ impl<T: Real> ChiangConstants<T> {
     /// Computes the constants of `parameters`.
     #[inline]
     #[must_use]
-    pub fn new(parameters: &ChiangParameters<T>, selection: Selection) -> Self {
+    pub fn new(parameters: &ChiangDesc<T>, selection: Selection) -> Self {
         Self {
             eta: parameters.eta,
             sigma_a: parameters.sigma_a,
@@ -73,7 +74,7 @@ impl<T: Real> ChiangConstants<T> {
             variances: parameters.variances(),
             shifts: PerLobe(
                 parameters
-                    .shifts_rad()
+                    .shift_angles()
                     .0
                     .map(|shift| [shift.sin(), shift.cos()]),
             ),
@@ -143,12 +144,7 @@ impl<T: Real> ChiangReference<T> {
     /// Computes the constants of `parameters`, `wo` and the offset `h`; for many hits, see [`ChiangConstants`].
     #[inline]
     #[must_use]
-    pub fn prepare(
-        parameters: &ChiangParameters<T>,
-        selection: Selection,
-        wo: [T; 3],
-        h: T,
-    ) -> Self {
+    pub fn prepare(parameters: &ChiangDesc<T>, selection: Selection, wo: [T; 3], h: T) -> Self {
         ChiangConstants::new(parameters, selection).prepare(wo, h)
     }
 

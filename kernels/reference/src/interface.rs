@@ -38,11 +38,11 @@ pub struct ReferenceSample<T> {
 ///
 /// ```
 /// use hairis::HairParams;
-/// use hairis_reference::{HairReference, Parameters, Reference, Shape};
+/// use hairis_reference::{HairReference, Reference, Shape};
 /// fn reflected(point: &dyn Reference<f64>) -> f64 {
 ///     point.albedo().0.iter().map(|lobe| lobe[0]).sum()
 /// }
-/// let brown = HairReference::prepare(&Parameters::from(&HairParams::brown()), Shape::Gaussian, [0.0, 1.0, 0.0]);
+/// let brown = HairReference::prepare(&HairParams::brown().desc().map(f64::from), Shape::Gaussian, [0.0, 1.0, 0.0]);
 /// assert!(reflected(&brown) < 1.0);
 /// ```
 pub trait Reference<T: Real>: Debug + Send + Sync {

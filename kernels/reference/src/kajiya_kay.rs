@@ -3,36 +3,10 @@
 use crate::steps::{Fixed, GRAZING, choose, finish_sample, fixed, inclination, mix, sum_to_one};
 use crate::{LobeAt, Real, Reference, ReferenceSample, integrate};
 use hairis::{Lobe, PerLobe};
-use hairis_variants::kajiya_kay::{Form, KajiyaKayParams};
+use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc};
 
 const DIFFUSE: Lobe = Lobe::slot(0);
 const SPECULAR: Lobe = Lobe::slot(1);
-
-/// A [`KajiyaKayDesc`](hairis_variants::KajiyaKayDesc) in either precision. Nothing is checked: make it from [`KajiyaKayParams`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct KajiyaKayParameters<T> {
-    /// Diffuse albedo, linear RGB.
-    pub kd: [T; 3],
-    /// Specular albedo at `theta_o = 0`, linear RGB.
-    pub ks: [T; 3],
-    /// Exponent of the highlight.
-    pub exponent: T,
-    /// Form of the highlight.
-    pub form: Form,
-}
-
-impl<T: Real> From<&KajiyaKayParams> for KajiyaKayParameters<T> {
-    #[inline]
-    fn from(params: &KajiyaKayParams) -> Self {
-        let d = params.desc();
-        Self {
-            kd: d.kd.map(T::from_f32),
-            ks: d.ks.map(T::from_f32),
-            exponent: T::from_f32(d.exponent),
-            form: d.form,
-        }
-    }
-}
 
 /// The model and its sampler for one set of parameters and one `wo`.
 ///
@@ -47,13 +21,13 @@ impl<T: Real> From<&KajiyaKayParams> for KajiyaKayParameters<T> {
 /// ```
 /// use hairis_reference::{KajiyaKayReference, Reference};
 /// use hairis_variants::KajiyaKayParams;
-/// let fiber = KajiyaKayReference::<f64>::prepare(&(&KajiyaKayParams::brown()).into(), [0.0, 1.0, 0.0]);
+/// let fiber = KajiyaKayReference::<f64>::prepare(&KajiyaKayParams::brown().desc().map(f64::from), [0.0, 1.0, 0.0]);
 /// let drawn = fiber.sample([0.6, 0.4, 0.7]);
 /// assert!((fiber.eval_pdf(drawn.wi).1 / drawn.pdf - 1.0).abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KajiyaKayReference<T> {
-    parameters: KajiyaKayParameters<T>,
+    parameters: KajiyaKayDesc<T>,
     sin_theta_o: T,
     cos_theta_o: T,
     /// `B(p + m)` and `B(p)`.
@@ -90,7 +64,7 @@ fn positive_power<T: Real>(cos: T, form: Form) -> T {
 /// Constants of a material: the norms, which cost four logarithms of the gamma function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KajiyaKayConstants<T> {
-    parameters: KajiyaKayParameters<T>,
+    parameters: KajiyaKayDesc<T>,
     /// `B(p + m)` and `B(p)`.
     norm: T,
     norm_pdf: T,
@@ -104,7 +78,7 @@ impl<T: Real> KajiyaKayConstants<T> {
     /// Computes the constants of `parameters`.
     #[inline]
     #[must_use]
-    pub fn new(parameters: &KajiyaKayParameters<T>) -> Self {
+    pub fn new(parameters: &KajiyaKayDesc<T>) -> Self {
         let number = T::from_f64;
         let (p, one) = (parameters.exponent, number(1.0));
         let (norm, grazing) = match parameters.form {
@@ -157,7 +131,7 @@ impl<T: Real> KajiyaKayReference<T> {
     /// Computes the constants of `parameters` and `wo`; for many `wo`, see [`KajiyaKayConstants`].
     #[inline]
     #[must_use]
-    pub fn prepare(parameters: &KajiyaKayParameters<T>, wo: [T; 3]) -> Self {
+    pub fn prepare(parameters: &KajiyaKayDesc<T>, wo: [T; 3]) -> Self {
         KajiyaKayConstants::new(parameters).prepare(wo)
     }
 

@@ -17,6 +17,7 @@
 //! - Numbers: [`Real`], elementary functions of `libm` unless the caller brings others.
 
 mod chiang;
+pub mod errata;
 mod interface;
 mod kajiya_kay;
 mod published;
@@ -25,14 +26,10 @@ mod real;
 mod registry;
 mod steps;
 
-pub use chiang::{ChiangConstants, ChiangParameters, ChiangReference, Selection, bessel_i0_scaled};
+pub use chiang::{ChiangConstants, ChiangFormulas, ChiangReference, Selection, bessel_i0_scaled};
 pub use interface::{LobeAt, Reference, ReferenceSample};
-pub use kajiya_kay::{
-    KajiyaKayConstants, KajiyaKayParameters, KajiyaKayReference, cosine_power_integral,
-};
-pub use published::{
-    CauchyDensity, HairFormulas, HairReference, MatchedReference, Parameters, Shape,
-};
+pub use kajiya_kay::{KajiyaKayConstants, KajiyaKayReference, cosine_power_integral};
+pub use published::{CauchyDensity, HairFormulas, HairReference, MatchedReference, Shape};
 pub use quadrature::integrate;
 pub use real::Real;
 pub use registry::{

@@ -12,31 +12,32 @@
 mod albedo;
 mod cauchy;
 mod cut;
+mod formulas;
 mod matched;
-mod parameters;
 mod sampler;
 
 use crate::steps::{GRAZING, choose, mix_pdfs, shares};
 use crate::{LobeAt, Real, Reference, ReferenceSample};
+use hairis::params::HairDesc;
 use hairis::{Lobe, PerLobe};
 
 pub use cauchy::CauchyDensity;
+pub use formulas::{HairFormulas, Shape};
 pub use matched::MatchedReference;
-pub use parameters::{HairFormulas, Parameters, Shape};
 
 /// The model and its published sampler for one set of parameters and one `wo`.
 ///
 /// ```
 /// use hairis::HairParams;
-/// use hairis_reference::{HairReference, Parameters, Reference, Shape};
-/// let parameters = Parameters::<f64>::from(&HairParams::brown());
+/// use hairis_reference::{HairReference, Reference, Shape};
+/// let parameters = HairParams::brown().desc().map(f64::from);
 /// let hair = HairReference::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0]);
 /// let drawn = hair.sample([0.1, 0.4, 0.7]);
 /// assert!((hair.pdf(drawn.wi) / drawn.pdf - 1.0).abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HairReference<T> {
-    parameters: Parameters<T>,
+    parameters: HairDesc<T>,
     shape: Shape,
     theta_o: T,
     phi_o: T,
@@ -80,7 +81,7 @@ impl<T: Real> HairReference<T> {
     /// - Units: rad; `wo` a unit vector in (u, v, w).
     #[inline]
     #[must_use]
-    pub fn prepare(parameters: &Parameters<T>, shape: Shape, wo: [T; 3]) -> Self {
+    pub fn prepare(parameters: &HairDesc<T>, shape: Shape, wo: [T; 3]) -> Self {
         let zero = T::default();
         let half = T::from_f64(0.5);
         let right = T::PI * half;
@@ -156,7 +157,7 @@ impl<T: Real> HairReference<T> {
         values[Lobe::R] = m_r * at.cos_half_phi / cos_sq_theta_d;
         values[Lobe::TT] = m_tt * n_tt / cos_sq_theta_d;
         values[Lobe::TRT] = m_trt * at.cos_half_phi / cos_sq_theta_d;
-        values[Lobe::GLINT] = m_trt * p.intensity_g * n_g / cos_sq_theta_d;
+        values[Lobe::GLINT] = m_trt * p.i_g * n_g / cos_sq_theta_d;
         values
     }
 
@@ -164,10 +165,10 @@ impl<T: Real> HairReference<T> {
     fn colour(&self, values: &PerLobe<T>) -> [T; 3] {
         let p = &self.parameters;
         let channel = |c: usize| {
-            p.intensity_r[c] * values[Lobe::R]
-                + p.intensity_tt[c] * values[Lobe::TT]
-                + p.intensity_trt[c] * values[Lobe::TRT]
-                + p.intensity_trt[c] * values[Lobe::GLINT]
+            p.i_r[c] * values[Lobe::R]
+                + p.i_tt[c] * values[Lobe::TT]
+                + p.i_trt[c] * values[Lobe::TRT]
+                + p.i_trt[c] * values[Lobe::GLINT]
         };
         [channel(0), channel(1), channel(2)]
     }
@@ -188,7 +189,7 @@ impl<T: Real> HairReference<T> {
     /// Each lobe's value, colour and density, the densities given.
     #[inline]
     fn lobes_with(&self, at: &Angles<T>, pdfs: &PerLobe<T>) -> PerLobe<LobeAt<T>> {
-        let (values, colours) = (self.values_at(at), self.parameters.colours());
+        let (values, colours) = (self.values_at(at), colours(&self.parameters));
         let mut lobes = PerLobe::default();
         for lobe in Lobe::ALL {
             lobes[lobe] = LobeAt {
@@ -278,17 +279,22 @@ impl<T: Real> Reference<T> for HairReference<T> {
     }
 }
 
+/// The colour of each lobe; the glint's has its strength in its value.
+fn colours<T: Real>(p: &HairDesc<T>) -> PerLobe<[T; 3]> {
+    PerLobe([p.i_r, p.i_tt, p.i_trt, p.i_trt])
+}
+
 /// Section 3.2.3.
 #[inline]
-fn energies<T: Real>(p: &Parameters<T>) -> PerLobe<T> {
+fn energies<T: Real>(p: &HairDesc<T>) -> PerLobe<T> {
     let mean = |rgb: [T; 3]| (rgb[0] + rgb[1] + rgb[2]) / T::from_f64(3.0);
     let cosine = T::from_f64(4.0) * (T::PI + T::PI).sqrt();
-    let trt = mean(p.intensity_trt);
+    let trt = mean(p.i_trt);
     let mut energies = PerLobe::default();
-    energies[Lobe::R] = cosine * p.beta[0] * mean(p.intensity_r);
-    energies[Lobe::TT] = T::from_f64(2.0) * T::PI * p.beta[1] * p.gamma_tt * mean(p.intensity_tt);
+    energies[Lobe::R] = cosine * p.beta[0] * mean(p.i_r);
+    energies[Lobe::TT] = T::from_f64(2.0) * T::PI * p.beta[1] * p.gamma_tt * mean(p.i_tt);
     energies[Lobe::TRT] = cosine * p.beta[2] * trt;
-    energies[Lobe::GLINT] = T::from_f64(4.0) * T::PI * p.beta[2] * p.gamma_g * trt * p.intensity_g;
+    energies[Lobe::GLINT] = T::from_f64(4.0) * T::PI * p.beta[2] * p.gamma_g * trt * p.i_g;
     energies
 }
 

@@ -1,16 +1,16 @@
 //! The formulas of the models of the registry.
 
 use crate::{
-    ChiangConstants, ChiangParameters, ChiangReference, HairReference, KajiyaKayConstants,
-    KajiyaKayParameters, KajiyaKayReference, MatchedReference, Parameters, Real, Reference,
-    Selection, Shape, cosine_power_integral,
+    ChiangConstants, ChiangFormulas, ChiangReference, HairReference, KajiyaKayConstants,
+    KajiyaKayReference, MatchedReference, Real, Reference, Selection, Shape, cosine_power_integral,
 };
 use core::f64::consts::{PI, TAU};
 use core::fmt::Debug;
+use hairis::params::HairDesc;
 use hairis::{Gaussian, HairParams, Lobe, Matched, ParamError, Published};
 use hairis_variants::{
-    AllCauchy, Cauchy, Chiang, ChiangParams, KajiyaKay, KajiyaKayParams, ModelId, Parameters as _,
-    Registered, RegisteredBell, Values,
+    AllCauchy, Cauchy, Chiang, ChiangDesc, ChiangParams, KajiyaKay, KajiyaKayDesc, KajiyaKayParams,
+    ModelId, Parameters as _, Registered, RegisteredBell, Values, hair_desc,
 };
 
 /// A model of the registry with its formulas.
@@ -170,7 +170,7 @@ impl Bell for Cauchy {
 /// Of the published sampler a weight is a value over a density: its bound is the sum of theirs. A cdf moves by 20 times as
 /// much as the angle on the narrowest lobe, of a degree, and the angle of a rounded direction by 2e-7 rad.
 impl<B: Bell> Formulas for Published<B> {
-    type Constants<T: Real> = Parameters<T>;
+    type Constants<T: Real> = HairDesc<T>;
     type Point<T: Real> = HairReference<T>;
     const ACCURACY: Accuracy = {
         let [value, _, _] = B::ERRORS;
@@ -186,17 +186,17 @@ impl<B: Bell> Formulas for Published<B> {
     };
 
     #[inline]
-    fn formulas<T: Real>(params: &HairParams) -> Parameters<T> {
-        Parameters::from(params)
+    fn formulas<T: Real>(params: &HairParams) -> HairDesc<T> {
+        params.desc().map(T::from_f32)
     }
 
     #[inline]
-    fn exact_formulas<T: Real>(_params: &HairParams, exact: &Values<T>) -> Parameters<T> {
-        exact_parameters(exact)
+    fn exact_formulas<T: Real>(_params: &HairParams, exact: &Values<T>) -> HairDesc<T> {
+        hair_desc(exact)
     }
 
     #[inline]
-    fn point<T: Real>(constants: &Parameters<T>, wo: [T; 3], _h: T) -> HairReference<T> {
+    fn point<T: Real>(constants: &HairDesc<T>, wo: [T; 3], _h: T) -> HairReference<T> {
         HairReference::prepare(constants, B::SHAPE, wo)
     }
 
@@ -209,7 +209,7 @@ impl<B: Bell> Formulas for Published<B> {
 /// worst. The largest seen of their density, S and weight is 2e-5 (Gaussian) and 9.8e-6 (Cauchy); of their cdf, 2.5e-5 on
 /// Gaussian lobes that lie off the sphere and fall from its pole, and 2.4e-6 on Cauchy ones (four seeds, in full).
 impl<B: Bell, const BANDS: usize> Formulas for Matched<B, BANDS> {
-    type Constants<T: Real> = Parameters<T>;
+    type Constants<T: Real> = HairDesc<T>;
     type Point<T: Real> = MatchedReference<T>;
     const ACCURACY: Accuracy = {
         let [value, sample, cdf] = B::ERRORS;
@@ -225,41 +225,22 @@ impl<B: Bell, const BANDS: usize> Formulas for Matched<B, BANDS> {
     };
 
     #[inline]
-    fn formulas<T: Real>(params: &HairParams) -> Parameters<T> {
-        Parameters::from(params)
+    fn formulas<T: Real>(params: &HairParams) -> HairDesc<T> {
+        params.desc().map(T::from_f32)
     }
 
     #[inline]
-    fn exact_formulas<T: Real>(_params: &HairParams, exact: &Values<T>) -> Parameters<T> {
-        exact_parameters(exact)
+    fn exact_formulas<T: Real>(_params: &HairParams, exact: &Values<T>) -> HairDesc<T> {
+        hair_desc(exact)
     }
 
     #[inline]
-    fn point<T: Real>(constants: &Parameters<T>, wo: [T; 3], _h: T) -> MatchedReference<T> {
+    fn point<T: Real>(constants: &HairDesc<T>, wo: [T; 3], _h: T) -> MatchedReference<T> {
         MatchedReference::prepare(constants, B::SHAPE, wo, BANDS)
     }
 
     fn slack(params: &HairParams, wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
         hair_slack(B::SHAPE, params, wo, wi)
-    }
-}
-
-/// The formulas' parameters of these values.
-fn exact_parameters<T: Real>(exact: &Values<T>) -> Parameters<T> {
-    let number = |name| {
-        let [number] = exact.get(name);
-        number
-    };
-    Parameters {
-        alpha: exact.get("alpha"),
-        beta: exact.get("beta"),
-        gamma_tt: number("gamma_tt"),
-        gamma_g: number("gamma_g"),
-        phi_g: number("phi_g"),
-        intensity_r: exact.get("i_r"),
-        intensity_tt: exact.get("i_tt"),
-        intensity_trt: exact.get("i_trt"),
-        intensity_g: number("i_g"),
     }
 }
 
@@ -273,8 +254,7 @@ fn hair_slack(shape: Shape, params: &HairParams, wo: [f64; 3], wi: [f64; 3]) -> 
     let cos_theta_d = (0.5 * (theta_o - theta_i)).cos();
     let d = params.desc();
     core::array::from_fn(|c| {
-        let intensity =
-            d.intensity_r[c] + d.intensity_tt[c] + d.intensity_trt[c] * (1.0 + d.intensity_g);
+        let intensity = d.i_r[c] + d.i_tt[c] + d.i_trt[c] * (1.0 + d.i_g);
         f64::from(intensity) * FLOOR / (cos_theta_d * cos_theta_d)
     })
 }
@@ -295,7 +275,7 @@ impl Formulas for KajiyaKay {
 
     #[inline]
     fn formulas<T: Real>(params: &KajiyaKayParams) -> KajiyaKayConstants<T> {
-        KajiyaKayConstants::new(&params.into())
+        KajiyaKayConstants::new(&params.desc().map(T::from_f32))
     }
 
     #[inline]
@@ -304,7 +284,7 @@ impl Formulas for KajiyaKay {
         exact: &Values<T>,
     ) -> KajiyaKayConstants<T> {
         let [exponent] = exact.get("exponent");
-        KajiyaKayConstants::new(&KajiyaKayParameters {
+        KajiyaKayConstants::new(&KajiyaKayDesc {
             kd: exact.get("kd"),
             ks: exact.get("ks"),
             exponent,
@@ -345,7 +325,7 @@ impl<const BY_CHANNEL: bool> Formulas for Chiang<BY_CHANNEL> {
 
     #[inline]
     fn formulas<T: Real>(params: &ChiangParams) -> ChiangConstants<T> {
-        ChiangConstants::new(&params.into(), Selection::of(BY_CHANNEL))
+        ChiangConstants::new(&params.desc().map(T::from_f32), Selection::of(BY_CHANNEL))
     }
 
     #[inline]
@@ -354,7 +334,7 @@ impl<const BY_CHANNEL: bool> Formulas for Chiang<BY_CHANNEL> {
             let [number] = exact.get(name);
             number
         };
-        let parameters = ChiangParameters {
+        let parameters = ChiangDesc {
             beta_m: number("beta_m"),
             beta_n: number("beta_n"),
             tilt: number("tilt"),
@@ -383,7 +363,7 @@ impl<const BY_CHANNEL: bool> Formulas for Chiang<BY_CHANNEL> {
 
     /// Errors grow with the exponent of a lobe: from `exp(-12)` of its peak down they are absolute.
     fn slack(params: &ChiangParams, _wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
-        let (p, [_, v, w]) = (ChiangParameters::<f64>::from(params), wi);
+        let (p, [_, v, w]) = (params.desc().map(f64::from), wi);
         let peak = 0.25 / ((TAU * p.variances()[Lobe::R]).sqrt() * p.scale());
         [Self::ACCURACY.value * (-12.0_f64).exp() * peak / v.hypot(w); 3]
     }

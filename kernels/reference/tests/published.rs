@@ -8,7 +8,7 @@ use crate::quadrature::{panels, rule};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::params::HairDesc;
 use hairis::{HairParams, Lobe};
-use hairis_reference::{HairReference, Parameters, Real, Reference, Shape};
+use hairis_reference::{HairReference, Real, Reference, Shape};
 
 const DEG: f64 = PI / 180.0;
 const SHAPES: [Shape; 2] = [Shape::Gaussian, Shape::Cauchy];
@@ -19,14 +19,14 @@ const TILTS: [[f64; 3]; 2] = [[-7.5, 3.75, 11.25], [10.0, -5.0, -15.0]];
 /// Cosine of the caps that are discarded.
 const GRAZING: f64 = 1e-5;
 
-pub(crate) fn default_set() -> Parameters<f64> {
-    Parameters::from(&HairParams::default_set())
+pub(crate) fn default_set() -> HairDesc<f64> {
+    HairParams::bright().desc().map(f64::from)
 }
 
 /// The default set with these tilts and with every width `width`, degrees.
-fn with_tilt_and_width(tilt: [f64; 3], width: f64) -> Parameters<f64> {
+fn with_tilt_and_width(tilt: [f64; 3], width: f64) -> HairDesc<f64> {
     let width = width * DEG;
-    Parameters {
+    HairDesc {
         alpha: tilt.map(|a| a * DEG),
         beta: [width; 3],
         gamma_tt: width,
@@ -45,7 +45,7 @@ pub(crate) fn direction(theta: f64, phi: f64) -> [f64; 3] {
 }
 
 /// Panels in `theta_i` and in `phi` fit for every lobe of `p` seen from `theta_o`, short of the discarded caps.
-pub(crate) fn sphere(p: &Parameters<f64>, theta_o: f64) -> [Vec<(f64, f64)>; 2] {
+pub(crate) fn sphere(p: &HairDesc<f64>, theta_o: f64) -> [Vec<(f64, f64)>; 2] {
     let peaks = [0, 1, 2].map(|lobe| (2.0 * p.alpha[lobe] - theta_o, 2.0 * p.beta[lobe]));
     let theta = panels(-FRAC_PI_2 + GRAZING, FRAC_PI_2 - GRAZING, &peaks);
     let (g, tt) = ((p.phi_g, p.gamma_g), (PI, p.gamma_tt));
@@ -155,7 +155,7 @@ fn cdf_is_the_integral_of_the_density() {
     }
 }
 
-fn worst_inversion<T: Real>(p: &Parameters<T>, wo: [T; 3]) -> f64 {
+fn worst_inversion<T: Real>(p: &HairDesc<T>, wo: [T; 3]) -> f64 {
     let hair = HairReference::prepare(p, Shape::Gaussian, wo);
     let turn = |phi: T| {
         if phi > T::PI {
@@ -207,7 +207,7 @@ fn eval_is_reciprocal() {
         .into_iter()
         .flat_map(|shape| HairParams::presets().map(|preset| (shape, preset.1)))
     {
-        let p = Parameters::<f64>::from(&params);
+        let p = params.desc().map(f64::from);
         for [a, b, c] in points(500) {
             let (wo, wi) = (
                 direction((a - 0.5) * PI, 6.0 * c),
@@ -295,8 +295,8 @@ fn a_sample_agrees_with_eval_and_pdf() {
 
 #[test]
 fn lobes_are_chosen_by_energy_and_never_without() {
-    let no_tt = Parameters {
-        intensity_tt: [0.0; 3],
+    let no_tt = HairDesc {
+        i_tt: [0.0; 3],
         ..default_set()
     };
     let hair = HairReference::prepare(&no_tt, Shape::Gaussian, direction(0.2, 0.0));
@@ -318,9 +318,9 @@ fn lobes_are_chosen_by_energy_and_never_without() {
         0,
         "a lobe without energy is never chosen"
     );
-    let black = Parameters {
-        intensity_r: [0.0; 3],
-        intensity_trt: [0.0; 3],
+    let black = HairDesc {
+        i_r: [0.0; 3],
+        i_trt: [0.0; 3],
         ..no_tt
     };
     let black = HairReference::prepare(&black, Shape::Cauchy, direction(0.2, 0.0));
@@ -365,7 +365,7 @@ fn the_axis_is_discarded() {
 fn f32_is_close_to_f64() {
     // Relative, further than 0.02 rad from the axis, widths of the default set. Measured: 6.2e-6 and 5.4e-6.
     let (mut worst_value, mut worst_pdf) = (0.0_f64, 0.0_f64);
-    let params = HairParams::new(&HairDesc::default()).unwrap();
+    let params = HairParams::new(&*HairParams::bright().desc()).unwrap();
     for [a, b, c] in points(20_000) {
         let single = |v: [f64; 3]| v.map(f32::from_f64);
         let (wo, wi) = (
@@ -373,8 +373,8 @@ fn f32_is_close_to_f64() {
             single(direction((b - 0.5) * 3.1, 6.2 * c)),
         );
         let (wo_f64, wi_f64) = (wo.map(f64::from), wi.map(f64::from));
-        let narrow = HairReference::prepare(&Parameters::<f32>::from(&params), Shape::Cauchy, wo);
-        let wide = HairReference::prepare(&Parameters::<f64>::from(&params), Shape::Cauchy, wo_f64);
+        let narrow = HairReference::prepare(&*params.desc(), Shape::Cauchy, wo);
+        let wide = HairReference::prepare(&params.desc().map(f64::from), Shape::Cauchy, wo_f64);
         for (x, y) in narrow.eval(wi).into_iter().zip(wide.eval(wi_f64)) {
             worst_value = worst_value.max((f64::from(x) / y - 1.0).abs());
         }
@@ -387,17 +387,15 @@ fn f32_is_close_to_f64() {
     for (width, bound) in [(3.0_f32, 1e-6), (15.0, 2.5e-7), (60.0, 2.5e-7)] {
         let w = width.to_radians();
         let desc = HairDesc {
-            beta_r: w,
-            beta_tt: w,
-            beta_trt: w,
+            beta: [w; 3],
             gamma_tt: w,
             gamma_g: w,
-            ..HairDesc::default()
+            ..*HairParams::bright().desc()
         };
         let params = HairParams::new(&desc).unwrap();
         for theta_o in THETA_O {
             let wo = direction(theta_o * DEG, 0.3).map(f32::from_f64);
-            let error = worst_inversion(&Parameters::<f32>::from(&params), wo);
+            let error = worst_inversion(&*params.desc(), wo);
             assert!(
                 error < bound,
                 "width {width} theta_o {theta_o}: cdf of the drawn angle off by {error:e}"
@@ -423,13 +421,13 @@ fn f32_results_are_finite() {
             .into_iter()
             .flat_map(|alpha| [0.0, 1.6, 3.1].map(|g| (alpha, g)))
         {
-            let p = Parameters {
+            let p = HairDesc {
                 alpha: [alpha; 3],
                 beta: [width; 3],
                 gamma_tt: width,
                 gamma_g: width,
                 phi_g,
-                ..Parameters::<f32>::from(&HairParams::default_set())
+                ..*HairParams::bright().desc()
             };
             for wo in axes {
                 let hair = HairReference::prepare(&p, shape, wo);

@@ -115,17 +115,13 @@ fn energies(beta: &[f32; 3], gamma_tt: f32, gamma_g: f32, params: &HairParams) -
     use core::f64::consts::PI;
     let d = params.desc();
     let mean = |rgb: [f32; 3]| rgb.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
-    let (i_r, i_tt, i_trt) = (
-        mean(d.intensity_r),
-        mean(d.intensity_tt),
-        mean(d.intensity_trt),
-    );
+    let (i_r, i_tt, i_trt) = (mean(d.i_r), mean(d.i_tt), mean(d.i_trt));
     let root = 4.0 * libm::sqrt(2.0 * PI);
     let energy = [
         root * f64::from(beta[0]) * i_r,
         2.0 * PI * f64::from(beta[1]) * f64::from(gamma_tt) * i_tt,
         root * f64::from(beta[2]) * i_trt,
-        4.0 * PI * f64::from(beta[2]) * f64::from(gamma_g) * i_trt * f64::from(d.intensity_g),
+        4.0 * PI * f64::from(beta[2]) * f64::from(gamma_g) * i_trt * f64::from(d.i_g),
     ];
     let largest = energy.iter().fold(0.0, |a: f64, e| a.max(*e));
     energy.map(|e| {

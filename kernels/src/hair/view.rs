@@ -71,15 +71,15 @@ impl HairLobes<f32> {
         let k = bell.width_factor();
         // Below 5e-5 rad the product of four Cauchy denominators overflows far from the centres.
         let [b_r, b_tt, b_trt, gamma_tt, gamma_g] =
-            [d.beta_r, d.beta_tt, d.beta_trt, d.gamma_tt, d.gamma_g]
+            [d.beta[0], d.beta[1], d.beta[2], d.gamma_tt, d.gamma_g]
                 .map(|width| (width * k).max(5e-5));
         let phi_g = d.phi_g;
         // The float next to pi is above it by a thousandth of the least width.
         let to_back = (PI - phi_g) + 2.0 * FRAC_PI_2_LOW;
         // Glints of absurd strength take the excess from the colour, so that their product overflows last.
-        let excess = (d.intensity_g * 1e-6).max(1.0);
+        let excess = (d.i_g * 1e-6).max(1.0);
         Self {
-            alpha: [d.alpha_r, d.alpha_tt, d.alpha_trt],
+            alpha: d.alpha,
             beta: [b_r, b_tt, b_trt, b_trt],
             inv_beta: [b_r, b_tt, b_trt].map(|b| f32::quotient(1.0, b)),
             half_gamma: [0.5 * gamma_tt, 0.5 * gamma_g],
@@ -90,14 +90,14 @@ impl HairLobes<f32> {
                 bell_area::<B>(-PI, PI, gamma_tt),
                 2.0 * bell_area::<B>(-phi_g, to_back, gamma_g),
             ],
-            color_r: d.intensity_r,
-            color_tt: d.intensity_tt,
-            color_trt: d.intensity_trt.map(|c| (c * excess).min(f32::MAX)),
+            color_r: d.i_r,
+            color_tt: d.i_tt,
+            color_trt: d.i_trt.map(|c| (c * excess).min(f32::MAX)),
             strength: [
                 1.0,
                 1.0,
                 f32::quotient(1.0, excess),
-                f32::quotient(d.intensity_g, excess),
+                f32::quotient(d.i_g, excess),
             ],
         }
     }

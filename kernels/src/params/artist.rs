@@ -1,6 +1,6 @@
 //! Hair described in an artist's terms: colour, intensity, position and width of each highlight, in degrees.
 
-use super::{HairDesc, HairParams, MAX_WIDTH, check, is_intensity};
+use super::{HairDesc, HairParams, MAX_WIDTH, Rule};
 use crate::ParamError;
 use core::f32::consts::{FRAC_PI_2, PI};
 
@@ -38,7 +38,7 @@ impl Default for Highlight {
     fn default() -> Self {
         Self {
             color: [1.0; 3],
-            intensity: 0.3,
+            intensity: 0.025,
             shift_deg: -7.5,
             width_deg: 7.5,
         }
@@ -66,8 +66,8 @@ impl Default for Transmission {
     #[inline]
     fn default() -> Self {
         Self {
-            color: [0.8, 0.6, 0.4],
-            intensity: 1.0,
+            color: [0.6, 0.4, 0.24],
+            intensity: 3.0,
             shift_deg: 3.75,
             width_deg: 3.75,
             azimuthal_width_deg: 10.0,
@@ -80,7 +80,7 @@ impl Default for Transmission {
 /// - Default: those of [`ArtistControls::default`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glints {
-    /// Strength relative to the secondary highlight, finite and at least 0: `intensity_g`. 0 switches them off.
+    /// Strength relative to the secondary highlight, finite and at least 0: `i_g`. 0 switches them off.
     pub strength: f32,
     /// Full angle from one glint to the other around the fibre, degrees in [0, 360]: twice `phi_g`.
     pub separation_deg: f32,
@@ -92,7 +92,7 @@ impl Default for Glints {
     #[inline]
     fn default() -> Self {
         Self {
-            strength: 0.5,
+            strength: 0.8,
             separation_deg: 70.0,
             azimuthal_width_deg: 10.0,
         }
@@ -102,9 +102,9 @@ impl Default for Glints {
 /// Hair in an artist's terms; [`HairParams::from_artist`] turns it into the parameters of the model.
 ///
 /// Every control acts alone, unlike the physical quantities behind a hair (Sadeghi et al. 2010, section 4): a colour
-/// times an intensity is the `intensity_*` of a [`HairDesc`], a shift its `alpha_*`, a width its `beta_*` or
+/// times an intensity is the `i_*` of a [`HairDesc`], a shift its `alpha`, a width its `beta` or
 /// `gamma_*`, with degrees for radians, and half the separation of the glints is its `phi_g`. The default is
-/// [`HairParams::default`].
+/// [`HairParams::default`], but for rounding.
 ///
 /// ```
 /// use hairis::HairParams;
@@ -114,8 +114,8 @@ impl Default for Glints {
 ///     ..ArtistControls::default()
 /// };
 /// let hair = HairParams::from_artist(&red_sheen)?;
-/// assert_eq!(hair.desc().intensity_trt, [0.45, 0.15, 0.05]);
-/// assert!((hair.desc().beta_trt.to_degrees() - 14.0).abs() < 1e-5);
+/// assert_eq!(hair.desc().i_trt, [0.45, 0.15, 0.05]);
+/// assert!((hair.desc().beta[2].to_degrees() - 14.0).abs() < 1e-5);
 /// # Ok::<(), hairis::ParamError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,8 +137,8 @@ impl Default for ArtistControls {
             primary: Highlight::default(),
             transmission: Transmission::default(),
             secondary: Highlight {
-                color: [0.7, 0.5, 0.3],
-                intensity: 1.0,
+                color: [0.36, 0.16, 0.0576],
+                intensity: 0.1,
                 shift_deg: 11.25,
                 width_deg: 15.0,
             },
@@ -163,35 +163,36 @@ impl HairParams {
             secondary: trt,
             glints,
         } = controls;
-        check(
-            is_intensity(glints.strength),
-            ParamError::Scalar("glints.strength", glints.strength),
-        )?;
+        Rule::NotNegative.check("glints.strength", &[glints.strength])?;
         Self::new(&HairDesc {
-            alpha_r: shift("primary.shift_deg", r.shift_deg)?,
-            alpha_tt: shift("transmission.shift_deg", tt.shift_deg)?,
-            alpha_trt: shift("secondary.shift_deg", trt.shift_deg)?,
-            beta_r: width("primary.width_deg", r.width_deg)?,
-            beta_tt: width("transmission.width_deg", tt.width_deg)?,
-            beta_trt: width("secondary.width_deg", trt.width_deg)?,
+            alpha: [
+                shift("primary.shift_deg", r.shift_deg)?,
+                shift("transmission.shift_deg", tt.shift_deg)?,
+                shift("secondary.shift_deg", trt.shift_deg)?,
+            ],
+            beta: [
+                width("primary.width_deg", r.width_deg)?,
+                width("transmission.width_deg", tt.width_deg)?,
+                width("secondary.width_deg", trt.width_deg)?,
+            ],
             gamma_tt: width("transmission.azimuthal_width_deg", tt.azimuthal_width_deg)?,
             gamma_g: width("glints.azimuthal_width_deg", glints.azimuthal_width_deg)?,
             phi_g: (degrees("glints.separation_deg", glints.separation_deg, SEPARATIONS)? * 0.5)
                 .min(PI),
-            intensity_r: tint("primary.color", r.color, "primary.intensity", r.intensity)?,
-            intensity_tt: tint(
+            i_r: tint("primary.color", r.color, "primary.intensity", r.intensity)?,
+            i_tt: tint(
                 "transmission.color",
                 tt.color,
                 "transmission.intensity",
                 tt.intensity,
             )?,
-            intensity_trt: tint(
+            i_trt: tint(
                 "secondary.color",
                 trt.color,
                 "secondary.intensity",
                 trt.intensity,
             )?,
-            intensity_g: glints.strength,
+            i_g: glints.strength,
         })
     }
 }
@@ -199,11 +200,7 @@ impl HairParams {
 /// `value` in radians, if it is within `range` degrees.
 #[inline]
 fn degrees(field: &'static str, value: f32, range: [f32; 2]) -> Result<f32, ParamError> {
-    let [least, most] = range;
-    check(
-        (least..=most).contains(&value),
-        ParamError::Degrees(field, value, range),
-    )?;
+    Rule::Degrees(range).check(field, &[value])?;
     Ok(value * RAD_PER_DEG)
 }
 
@@ -227,21 +224,16 @@ fn tint(
     intensity_field: &'static str,
     intensity: f32,
 ) -> Result<[f32; 3], ParamError> {
-    check(
-        is_intensity(intensity),
-        ParamError::Scalar(intensity_field, intensity),
-    )?;
-    let mut rgb = [0.0; 3];
-    for (channel, (product, value)) in rgb.iter_mut().zip(color).enumerate() {
-        check(
-            is_intensity(value),
-            ParamError::Intensity(color_field, channel, value),
-        )?;
-        *product = value * intensity;
-        check(
-            is_intensity(*product),
-            ParamError::Overflow(color_field, channel, value),
-        )?;
+    Rule::NotNegative.check(intensity_field, &[intensity])?;
+    Rule::NotNegative.check(color_field, &color)?;
+    let rgb = color.map(|value| value * intensity);
+    match rgb.iter().position(|product| !product.is_finite()) {
+        None => Ok(rgb),
+        Some(channel) => Err(ParamError::new(
+            color_field,
+            Some(channel),
+            Rule::FiniteProduct,
+            color[channel],
+        )),
     }
-    Ok(rgb)
 }

@@ -1,99 +1,170 @@
-//! Errors of hair parameters.
+//! Refusals of parameters, and the rules that are behind them.
 
+use core::f32::consts::{FRAC_PI_2, PI};
 use core::fmt;
 
-/// Refusal of hair parameters: the field at fault and its value.
+/// The rule that each number of a field obeys.
 ///
 /// ```
-/// use hairis::{HairParams, ParamError};
-/// use hairis::params::HairDesc;
-/// let refused = HairParams::new(&HairDesc { beta_tt: 0.0, ..HairDesc::default() });
-/// assert_eq!(refused, Err(ParamError::Width("beta_tt", 0.0)));
+/// use hairis::params::Rule;
+/// assert!(Rule::Width.accepts(0.1) && !Rule::Width.accepts(f32::NAN));
+/// assert_eq!(Rule::Range([1.0, 4.0]).to_string(), "in [1, 4]");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum ParamError {
-    /// A width outside `[1e-4, pi]` rad, or not finite.
-    Width(&'static str, f32),
-    /// A longitudinal shift outside `[-pi/2, pi/2]` rad, or not finite.
-    Shift(&'static str, f32),
-    /// The half angle between the glints outside `[0, pi]` rad, or not finite.
-    GlintAngle(&'static str, f32),
-    /// An intensity that is negative or not finite: the field, the channel (0 red, 1 green, 2 blue) and the value.
-    Intensity(&'static str, usize, f32),
-    /// A scalar that is negative or not finite, such as the strength of the glints.
-    Scalar(&'static str, f32),
-    /// A factor on the widths outside `[0.5, 4]`, or not finite.
-    WidthFactor(&'static str, f32),
-    /// An artist's angle that is not finite or outside its range: the field, the value and the range, in degrees.
-    Degrees(&'static str, f32, [f32; 2]),
-    /// A number outside the range of its field, or not finite: the field, the value, the least and the most.
-    Range(&'static str, f32, [f32; 2]),
-    /// An artist's colour whose product with its intensity overflows: the field, the channel and the colour's value.
-    Overflow(&'static str, usize, f32),
+pub enum Rule {
+    /// A width in `[1e-4, pi]` rad.
+    Width,
+    /// A longitudinal shift in `[-pi/2, pi/2]` rad.
+    Shift,
+    /// An angle in `[0, pi]` rad.
+    Azimuth,
+    /// Finite and at least 0.
+    NotNegative,
+    /// An angle in this range of degrees, both ends included.
+    Degrees([f32; 2]),
+    /// A number in this range, both ends included.
+    Range([f32; 2]),
+    /// A colour whose product with its intensity is finite.
+    FiniteProduct,
+}
+
+impl Rule {
+    /// The smallest and the largest number that obey the rule.
+    #[inline]
+    #[must_use]
+    pub const fn range(self) -> [f32; 2] {
+        match self {
+            Self::Width => [super::MIN_WIDTH, super::MAX_WIDTH],
+            Self::Shift => [-FRAC_PI_2, FRAC_PI_2],
+            Self::Azimuth => [0.0, PI],
+            Self::NotNegative | Self::FiniteProduct => [0.0, f32::MAX],
+            Self::Degrees(range) | Self::Range(range) => range,
+        }
+    }
+
+    /// Whether `value` obeys the rule; NaN never does.
+    #[inline]
+    #[must_use]
+    pub fn accepts(self, value: f32) -> bool {
+        let [least, most] = self.range();
+        (least..=most).contains(&value)
+    }
+
+    /// Checks the numbers of `field`.
+    ///
+    /// # Errors
+    ///
+    /// The first number that does not obey the rule; its place is named where there are several numbers.
+    #[inline]
+    pub fn check(self, field: &'static str, numbers: &[f32]) -> Result<(), ParamError> {
+        for (number, value) in numbers.iter().enumerate() {
+            if !self.accepts(*value) {
+                return Err(ParamError {
+                    field,
+                    number: (numbers.len() > 1).then_some(number),
+                    rule: self,
+                    value: *value,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Rule {
+    #[inline]
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Width => f.write_str("a width in [1e-4, pi] rad"),
+            Self::Shift => f.write_str("an angle in [-pi/2, pi/2] rad"),
+            Self::Azimuth => f.write_str("an angle in [0, pi] rad"),
+            Self::NotNegative => f.write_str("finite and at least 0"),
+            Self::Degrees([least, most]) => {
+                write!(f, "an angle in [{least}, {most}] degrees")
+            }
+            Self::Range([least, most]) => write!(f, "in [{least}, {most}]"),
+            Self::FiniteProduct => {
+                f.write_str("so small that its product with the intensity is finite")
+            }
+        }
+    }
+}
+
+/// Refusal of parameters: the field at fault, its value, and the rule it breaks.
+///
+/// ```
+/// use hairis::HairParams;
+/// use hairis::params::{HairDesc, Rule};
+/// let error = HairParams::new(&HairDesc { beta: [0.1, 0.0, 0.2], ..HairDesc::default() }).unwrap_err();
+/// assert_eq!((error.field(), error.number(), error.value()), ("beta", Some(1), 0.0));
+/// assert_eq!(error.rule(), Rule::Width);
+/// assert_eq!(error.to_string(), "beta[1] must be a width in [1e-4, pi] rad, got 0");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParamError {
+    field: &'static str,
+    number: Option<usize>,
+    rule: Rule,
+    value: f32,
 }
 
 impl ParamError {
+    /// The refusal of `value`; `number` is its place in a field of several numbers.
+    #[inline]
+    #[must_use]
+    pub const fn new(field: &'static str, number: Option<usize>, rule: Rule, value: f32) -> Self {
+        Self {
+            field,
+            number,
+            rule,
+            value,
+        }
+    }
+
     /// Name of the field at fault.
     #[inline]
     #[must_use]
     pub const fn field(&self) -> &'static str {
-        match *self {
-            Self::Width(field, _)
-            | Self::Shift(field, _)
-            | Self::GlintAngle(field, _)
-            | Self::Intensity(field, _, _)
-            | Self::Scalar(field, _)
-            | Self::WidthFactor(field, _)
-            | Self::Degrees(field, _, _)
-            | Self::Range(field, _, _)
-            | Self::Overflow(field, _, _) => field,
-        }
+        self.field
+    }
+
+    /// Place of the number at fault in the field: a lobe, or 0 red, 1 green, 2 blue. `None` if the field is one number.
+    #[inline]
+    #[must_use]
+    pub const fn number(&self) -> Option<usize> {
+        self.number
+    }
+
+    /// The rule that the value breaks.
+    #[inline]
+    #[must_use]
+    pub const fn rule(&self) -> Rule {
+        self.rule
+    }
+
+    /// The value at fault.
+    #[inline]
+    #[must_use]
+    pub const fn value(&self) -> f32 {
+        self.value
     }
 }
 
 impl fmt::Display for ParamError {
     #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Width(field, value) => {
-                write!(f, "{field} must be a width in [1e-4, pi] rad, got {value}")
-            }
-            Self::Shift(field, value) => write!(
-                f,
-                "{field} must be an angle in [-pi/2, pi/2] rad, got {value}"
-            ),
-            Self::GlintAngle(field, value) => {
-                write!(f, "{field} must be an angle in [0, pi] rad, got {value}")
-            }
-            Self::Intensity(field, channel, value) => {
-                write!(
-                    f,
-                    "{field}[{channel}] must be finite and at least 0, got {value}"
-                )
-            }
-            Self::Scalar(field, value) => {
-                write!(f, "{field} must be finite and at least 0, got {value}")
-            }
-            Self::WidthFactor(field, value) => {
-                write!(f, "{field} must be in [0.5, 4], got {value}")
-            }
-            Self::Degrees(field, value, [least, most]) => {
-                write!(
-                    f,
-                    "{field} must be an angle in [{least}, {most}] degrees, got {value}"
-                )
-            }
-            Self::Range(field, value, [least, most]) => {
-                write!(f, "{field} must be in [{least}, {most}], got {value}")
-            }
-            Self::Overflow(field, channel, value) => {
-                write!(
-                    f,
-                    "{field}[{channel}] times its intensity must be finite, got a color of {value}"
-                )
-            }
+        let Self {
+            field,
+            number,
+            rule,
+            value,
+        } = self;
+        f.write_str(field)?;
+        if let Some(number) = number {
+            write!(f, "[{number}]")?;
         }
+        write!(f, " must be {rule}, got {value}")
     }
 }
 

@@ -6,8 +6,8 @@ use core::f32::consts::PI;
 /// Values that differ between presets, in degrees; the other shifts and widths follow from R (Marschner et al. 2003,
 /// table 1): `alpha_tt = -alpha_r / 2`, `alpha_trt = -3 alpha_r / 2`, `beta_tt = beta_r / 2`, `beta_trt = 2 beta_r`.
 struct Look {
-    alpha_r: f32,
-    beta_r: f32,
+    alpha: f32,
+    beta: f32,
     gamma_tt: f32,
     gamma_g: f32,
     phi_g: f32,
@@ -27,27 +27,31 @@ impl Look {
         let [r, g, b] = self.pigment;
         let (tt, trt) = (self.transmitted, self.returned);
         HairParams(HairDesc {
-            alpha_r: self.alpha_r * deg,
-            alpha_tt: -0.5 * self.alpha_r * deg,
-            alpha_trt: -1.5 * self.alpha_r * deg,
-            beta_r: self.beta_r * deg,
-            beta_tt: 0.5 * self.beta_r * deg,
-            beta_trt: 2.0 * self.beta_r * deg,
+            alpha: [
+                self.alpha * deg,
+                -0.5 * self.alpha * deg,
+                -1.5 * self.alpha * deg,
+            ],
+            beta: [
+                self.beta * deg,
+                0.5 * self.beta * deg,
+                2.0 * self.beta * deg,
+            ],
             gamma_tt: self.gamma_tt * deg,
             gamma_g: self.gamma_g * deg,
             phi_g: self.phi_g * deg,
-            intensity_r: [self.reflected; 3],
-            intensity_tt: [tt * r, tt * g, tt * b],
-            intensity_trt: [trt * r * r, trt * g * g, trt * b * b],
-            intensity_g: self.glint,
+            i_r: [self.reflected; 3],
+            i_tt: [tt * r, tt * g, tt * b],
+            i_trt: [trt * r * r, trt * g * g, trt * b * b],
+            i_g: self.glint,
         })
     }
 }
 
 /// Base of the presets; each states its differences.
 const BASE: Look = Look {
-    alpha_r: -7.5,
-    beta_r: 7.5,
+    alpha: -7.5,
+    beta: 7.5,
     gamma_tt: 10.0,
     gamma_g: 10.0,
     phi_g: 35.0,
@@ -59,8 +63,8 @@ const BASE: Look = Look {
 };
 
 const BLOND: HairParams = Look {
-    alpha_r: -7.0,
-    beta_r: 8.0,
+    alpha: -7.0,
+    beta: 8.0,
     gamma_g: 14.0,
     pigment: [0.92, 0.76, 0.48],
     reflected: 0.02,
@@ -76,7 +80,7 @@ const BROWN: HairParams = Look {
 }
 .params();
 const RED: HairParams = Look {
-    alpha_r: -7.0,
+    alpha: -7.0,
     gamma_g: 12.0,
     pigment: [0.8, 0.36, 0.14],
     glint: 0.7,
@@ -84,8 +88,8 @@ const RED: HairParams = Look {
 }
 .params();
 const BLACK: HairParams = Look {
-    alpha_r: -6.0,
-    beta_r: 6.0,
+    alpha: -6.0,
+    beta: 6.0,
     pigment: [0.14, 0.1, 0.08],
     reflected: 0.03,
     returned: 0.2,
@@ -93,8 +97,8 @@ const BLACK: HairParams = Look {
 }
 .params();
 const WHITE: HairParams = Look {
-    alpha_r: -8.0,
-    beta_r: 9.0,
+    alpha: -8.0,
+    beta: 9.0,
     gamma_tt: 12.0,
     gamma_g: 18.0,
     phi_g: 40.0,
@@ -105,8 +109,24 @@ const WHITE: HairParams = Look {
 }
 .params();
 
+/// Not of the looks: the set that Ou et al. measure efficiency with.
+const BRIGHT: HairParams = {
+    let deg = PI / 180.0;
+    HairParams(HairDesc {
+        alpha: [-7.5 * deg, 3.75 * deg, 11.25 * deg],
+        beta: [7.5 * deg, 3.75 * deg, 15.0 * deg],
+        gamma_tt: 10.0 * deg,
+        gamma_g: 10.0 * deg,
+        phi_g: 35.0 * deg,
+        i_r: [0.3; 3],
+        i_tt: [0.8, 0.6, 0.4],
+        i_trt: [0.7, 0.5, 0.3],
+        i_g: 0.5,
+    })
+};
+
 /// Presets. Shifts and widths are in the range Marschner et al. 2003 (table 1) measured on everyday hair, glints in
-/// that of Sadeghi et al. 2010. Intensities are ours: but for [`default_set`](Self::default_set), the light a fibre
+/// that of Sadeghi et al. 2010. Intensities are ours: but for [`bright`](Self::bright), the light a fibre
 /// returns, averaged over directions, is below what it receives in every channel (figures beside each, Gaussian
 /// model; test `params::presets_return_less_than_they_receive`). From grazing directions it may still return up to
 /// twice as much, as the model does not conserve energy: see [`Material::conserving_scale`](crate::Material::conserving_scale).
@@ -146,15 +166,15 @@ impl HairParams {
         WHITE
     }
 
-    /// The default set of the efficiency figures, [`HairDesc::default`]: brown, highlights strong as an artist would
-    /// have them under direct light alone. It returns about (3.9 3.0 2.1) times the light: scale it for path tracing.
+    /// Bright: the set of the efficiency figures, brown with highlights as strong as an artist has them under direct light alone. It
+    /// returns about (3.9 3.0 2.1) times the light: scale it for path tracing.
     #[inline]
     #[must_use]
-    pub const fn default_set() -> Self {
-        Self(HairDesc::DEFAULT)
+    pub const fn bright() -> Self {
+        BRIGHT
     }
 
-    /// Every preset with its name, for menus and test grids.
+    /// Every preset with its name, for menus and test grids. The figures of this project are those of the first.
     ///
     /// ```
     /// use hairis::HairParams;
@@ -164,7 +184,7 @@ impl HairParams {
     #[must_use]
     pub const fn presets() -> [(&'static str, Self); 6] {
         [
-            ("default", Self::default_set()),
+            ("bright", BRIGHT),
             ("blond", BLOND),
             ("brown", BROWN),
             ("red", RED),
@@ -175,9 +195,9 @@ impl HairParams {
 }
 
 impl Default for HairParams {
-    /// [`HairParams::default_set`].
+    /// [`HairParams::brown`].
     #[inline]
     fn default() -> Self {
-        Self::default_set()
+        BROWN
     }
 }

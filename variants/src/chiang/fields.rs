@@ -1,29 +1,58 @@
 //! The model in the registry, and its parameters as fields.
 
+use super::params::{INDEX, ROUGHNESS, SHARE, TILT};
 use super::{Chiang, ChiangDesc, ChiangParams, Shifts};
 use crate::{Field, Kind, Parameters, Registered, Values};
 use hairis::ParamError;
+use hairis::params::Rule;
 
 const SHIFTS: [(&str, Shifts); 2] = [("d-eon", Shifts::DEon), ("small-angle", Shifts::SmallAngle)];
 
 impl Parameters for ChiangParams {
     const FIELDS: &'static [Field] = &[
-        Field::new("beta_m", Kind::Number)
+        Field::new("beta_m", Kind::Number, ROUGHNESS, "Longitudinal roughness.")
             .log_uniform(0.1, 1.0)
             .narrow(0.02),
-        Field::new("beta_n", Kind::Number)
+        Field::new("beta_n", Kind::Number, ROUGHNESS, "Azimuthal roughness.")
             .log_uniform(0.1, 1.0)
             .narrow(0.02),
-        Field::new("tilt", Kind::Number)
+        Field::new("tilt", Kind::Number, TILT, "Tilt of the cuticle's scales.")
+            .radians()
             .uniform(-5.0, 5.0)
             .degrees()
             .optional(),
-        Field::new("eta", Kind::Number).uniform(1.3, 1.7).optional(),
-        Field::new("sigma_a", Kind::Rgb).log_uniform(0.05, 5.0),
-        Field::new("melanin", Kind::Numbers(&["eumelanin", "pheomelanin"])).instead_of("sigma_a"),
-        Field::new("melanin_amount", Kind::Numbers(&["amount", "redness"])).instead_of("sigma_a"),
-        Field::new("color", Kind::Rgb).instead_of("sigma_a"),
-        Field::new("shifts", Kind::Word(&[SHIFTS[0].0, SHIFTS[1].0])).optional(),
+        Field::new("eta", Kind::Number, INDEX, "Index of refraction.")
+            .uniform(1.3, 1.7)
+            .optional(),
+        Field::new(
+            "sigma_a",
+            Kind::Rgb,
+            Rule::NotNegative,
+            "Absorption per fibre radius.",
+        )
+        .log_uniform(0.05, 5.0),
+        Field::new(
+            "melanin",
+            Kind::Numbers(&["eumelanin", "pheomelanin"]),
+            Rule::NotNegative,
+            "Concentrations of both pigments.",
+        )
+        .instead_of("sigma_a"),
+        Field::new(
+            "melanin_amount",
+            Kind::Numbers(&["amount", "redness"]),
+            SHARE,
+            "How dark and how red the pigment is.",
+        )
+        .instead_of("sigma_a"),
+        Field::new("color", Kind::Rgb, SHARE, "Colour of a mass of such hair.")
+            .instead_of("sigma_a"),
+        Field::word(
+            "shifts",
+            Kind::Word(&[SHIFTS[0].0, SHIFTS[1].0]),
+            "Formula of the lobes' shifts.",
+        )
+        .optional(),
     ];
     const PRESETS: &'static [(&'static str, Self)] = &Self::presets();
 
@@ -45,17 +74,13 @@ impl Parameters for ChiangParams {
 
     #[inline]
     fn from_values(values: &Values) -> Result<Self, ParamError> {
-        let number = |name| {
-            let [number] = values.get(name);
-            number
-        };
         let word = values.word("shifts");
         let desc = ChiangDesc {
-            beta_m: number("beta_m"),
-            beta_n: number("beta_n"),
-            tilt: number("tilt"),
-            eta: number("eta"),
-            sigma_a: values.get("sigma_a"),
+            beta_m: values.number_at(0),
+            beta_n: values.number_at(1),
+            tilt: values.number_at(2),
+            eta: values.number_at(3),
+            sigma_a: values.get_at(4),
             shifts: SHIFTS
                 .iter()
                 .find(|(one, _)| *one == word)
@@ -73,6 +98,13 @@ impl Parameters for ChiangParams {
             desc
         };
         Self::new(&desc)
+    }
+
+    /// The fibre itself: it returns no more than it receives.
+    #[inline]
+    fn scaled(&self, factor: f32) -> Result<Self, ParamError> {
+        Rule::NotNegative.check("factor", &[factor])?;
+        Ok(*self)
     }
 }
 

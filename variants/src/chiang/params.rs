@@ -1,20 +1,25 @@
 //! Parameters of the energy-conserving fibre.
 
-use crate::check::{check, check_range, check_rgb, is_intensity};
 use core::f32::consts::{FRAC_PI_4, PI};
 use hairis::ParamError;
+use hairis::params::{Rule, melanin_absorption, melanin_concentrations};
 
 /// Roughnesses accepted.
-const ROUGHNESSES: [f32; 2] = [1e-3, 1.0];
+pub(super) const ROUGHNESS: Rule = Rule::Range([1e-3, 1.0]);
 /// Tilts of the cuticle accepted, rad.
-const TILTS: [f32; 2] = [-FRAC_PI_4, FRAC_PI_4];
+pub(super) const TILT: Rule = Rule::Range([-FRAC_PI_4, FRAC_PI_4]);
 /// Indices of refraction accepted.
-const INDICES: [f32; 2] = [1.0, 4.0];
-/// Shares accepted: of melanin, of redness, and colours.
-const SHARES: [f32; 2] = [0.0, 1.0];
+pub(super) const INDEX: Rule = Rule::Range([1.0, 4.0]);
+/// Colours accepted.
+pub(super) const SHARE: Rule = Rule::Range([0.0, 1.0]);
 
 /// Formula of the lobes' shifts by the tilt of the cuticle's scales.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Shifts {
     /// `theta_i + theta_o` is shifted by -2, +1 and +4 tilts for R, TT and TRT: d'Eon et al. 2011.
     #[default]
@@ -29,19 +34,41 @@ pub enum Shifts {
 ///
 /// - Default: warm brown hair (eumelanin 1.3, pheomelanin .2), a `beta_m` and a `beta_n` of .3, a tilt of 2 degrees, an `eta` of 1.55.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChiangDesc {
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+pub struct ChiangDesc<T = f32> {
     /// Longitudinal roughness, in `[1e-3, 1]`; .3 is a width of 16.7 degrees, see [`width_deg`](Self::width_deg).
-    pub beta_m: f32,
+    pub beta_m: T,
     /// Azimuthal roughness, in `[1e-3, 1]`.
-    pub beta_n: f32,
+    pub beta_n: T,
     /// Tilt of the cuticle's scales, rad in `[-pi/4, pi/4]`. Positive moves the primary highlight towards the root.
-    pub tilt: f32,
+    pub tilt: T,
     /// Index of refraction, in `[1, 4]`.
-    pub eta: f32,
+    pub eta: T,
     /// Absorption per fibre radius, linear RGB, each finite and at least 0.
-    pub sigma_a: [f32; 3],
+    pub sigma_a: [T; 3],
     /// Formula of the lobes' shifts.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub shifts: Shifts,
+}
+
+impl<T: Copy> ChiangDesc<T> {
+    /// The same fibre with every number converted.
+    #[inline]
+    #[must_use]
+    pub fn map<U>(&self, convert: impl Fn(T) -> U) -> ChiangDesc<U> {
+        ChiangDesc {
+            beta_m: convert(self.beta_m),
+            beta_n: convert(self.beta_n),
+            tilt: convert(self.tilt),
+            eta: convert(self.eta),
+            sigma_a: self.sigma_a.map(&convert),
+            shifts: self.shifts,
+        }
+    }
 }
 
 impl ChiangDesc {
@@ -54,42 +81,27 @@ impl ChiangDesc {
             beta_n: 0.3,
             tilt: 2.0 * PI / 180.0,
             eta: 1.55,
-            sigma_a: melanin(eumelanin, pheomelanin),
+            sigma_a: melanin_absorption([eumelanin, pheomelanin]),
             shifts: Shifts::DEon,
         }
     }
 
-    /// The same fibre with the absorption of these concentrations of melanin.
-    ///
-    /// `sigma_a = eumelanin (.419 .697 1.37) + pheomelanin (.187 .4 1.05)`
-    ///
-    /// - Source: d'Eon et al. 2011. Blond hair has .3 and 0, brown 1.3 and 0, black 8 and 0, red .25 and 1.1.
+    /// The same fibre with the absorption of these concentrations of melanin: see [`melanin_absorption`].
     ///
     /// # Errors
     ///
     /// If a concentration is negative or not finite.
     #[inline]
     pub fn with_melanin(self, eumelanin: f32, pheomelanin: f32) -> Result<Self, ParamError> {
-        check(
-            is_intensity(eumelanin),
-            ParamError::Scalar("eumelanin", eumelanin),
-        )?;
-        check(
-            is_intensity(pheomelanin),
-            ParamError::Scalar("pheomelanin", pheomelanin),
-        )?;
+        let melanin = [eumelanin, pheomelanin];
+        Rule::NotNegative.check("melanin", &melanin)?;
         Ok(Self {
-            sigma_a: melanin(eumelanin, pheomelanin).map(|c| c.min(f32::MAX)),
+            sigma_a: melanin_absorption(melanin).map(|c| c.min(f32::MAX)),
             ..self
         })
     }
 
-    /// The same fibre with an artist's melanin: how dark, and how red.
-    ///
-    /// `q = -ln max(1 - amount, 1e-4)`, eumelanin `q (1 - redness)`, pheomelanin `q redness`
-    ///
-    /// - Source: `deon_hair_absorption_from_melanin` of the `MaterialX` standard library.
-    /// - Domain: `amount` and `redness` in `[0, 1]`.
+    /// The same fibre with an artist's melanin, how dark and how red: see [`melanin_concentrations`].
     ///
     /// # Errors
     ///
@@ -103,10 +115,8 @@ impl ChiangDesc {
     /// ```
     #[inline]
     pub fn with_melanin_amount(self, amount: f32, redness: f32) -> Result<Self, ParamError> {
-        check_range("amount", amount, SHARES)?;
-        check_range("redness", redness, SHARES)?;
-        let quantity = -libm::logf((1.0 - amount).max(1e-4));
-        self.with_melanin(quantity * (1.0 - redness), quantity * redness)
+        let [eumelanin, pheomelanin] = melanin_concentrations(amount, redness)?;
+        self.with_melanin(eumelanin, pheomelanin)
     }
 
     /// The same fibre with the absorption that gives a mass of such hair about this colour.
@@ -121,10 +131,8 @@ impl ChiangDesc {
     /// If a channel is outside `[0, 1]`, or `beta_n` outside its range.
     #[inline]
     pub fn with_color(self, color: [f32; 3]) -> Result<Self, ParamError> {
-        check_range("beta_n", self.beta_n, ROUGHNESSES)?;
-        for value in color {
-            check_range("color", value, SHARES)?;
-        }
+        ROUGHNESS.check("beta_n", &[self.beta_n])?;
+        SHARE.check("color", &color)?;
         let by = 1.0 / color_denominator(self.beta_n);
         let absorption = |c: f32| {
             let log = libm::logf(c.max(1e-3)) * by;
@@ -214,16 +222,6 @@ impl Default for ChiangDesc {
     }
 }
 
-/// Absorption of eumelanin and pheomelanin: d'Eon et al. 2011.
-const fn melanin(eumelanin: f32, pheomelanin: f32) -> [f32; 3] {
-    let (e, f) = (eumelanin, pheomelanin);
-    [
-        0.419 * e + 0.187 * f,
-        0.697 * e + 0.4 * f,
-        1.37 * e + 1.05 * f,
-    ]
-}
-
 #[expect(
     clippy::cast_possible_truncation,
     reason = "rounding is what the call is for; no value here overflows"
@@ -242,12 +240,16 @@ fn color_denominator(n: f32) -> f32 {
 /// Parameters of the energy-conserving fibre that passed their checks.
 ///
 /// ```
-/// use hairis::ParamError;
 /// use hairis_variants::{ChiangDesc, ChiangParams};
 /// let refused = ChiangParams::new(&ChiangDesc { beta_m: 0.0, ..ChiangDesc::default() });
-/// assert_eq!(refused, Err(ParamError::Range("beta_m", 0.0, [1e-3, 1.0])));
+/// assert_eq!(refused.unwrap_err().to_string(), "beta_m must be in [0.001, 1], got 0");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "ChiangDesc", into = "ChiangDesc")
+)]
 pub struct ChiangParams(ChiangDesc);
 
 impl ChiangParams {
@@ -258,11 +260,11 @@ impl ChiangParams {
     /// The first field outside its range (see [`ChiangDesc`]), with its value; NaN and infinities never pass.
     #[inline]
     pub fn new(desc: &ChiangDesc) -> Result<Self, ParamError> {
-        check_range("beta_m", desc.beta_m, ROUGHNESSES)?;
-        check_range("beta_n", desc.beta_n, ROUGHNESSES)?;
-        check_range("tilt", desc.tilt, TILTS)?;
-        check_range("eta", desc.eta, INDICES)?;
-        check_rgb("sigma_a", desc.sigma_a)?;
+        ROUGHNESS.check("beta_m", &[desc.beta_m])?;
+        ROUGHNESS.check("beta_n", &[desc.beta_n])?;
+        TILT.check("tilt", &[desc.tilt])?;
+        INDEX.check("eta", &[desc.eta])?;
+        Rule::NotNegative.check("sigma_a", &desc.sigma_a)?;
         Ok(Self(*desc))
     }
 
@@ -330,5 +332,23 @@ impl Default for ChiangParams {
     #[inline]
     fn default() -> Self {
         Self(ChiangDesc::DEFAULT)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<ChiangDesc> for ChiangParams {
+    type Error = ParamError;
+
+    #[inline]
+    fn try_from(desc: ChiangDesc) -> Result<Self, ParamError> {
+        Self::new(&desc)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<ChiangParams> for ChiangDesc {
+    #[inline]
+    fn from(params: ChiangParams) -> Self {
+        params.0
     }
 }

@@ -1,8 +1,10 @@
 //! The model in the registry, and its parameters as fields.
 
+use super::params::EXPONENT;
 use super::{Form, KajiyaKay, KajiyaKayDesc, KajiyaKayParams};
 use crate::{Field, Kind, Parameters, Registered, Values};
 use hairis::ParamError;
+use hairis::params::Rule;
 
 const FORMS: [(&str, Form); 2] = [
     ("reciprocal", Form::Reciprocal),
@@ -11,12 +13,28 @@ const FORMS: [(&str, Form); 2] = [
 
 impl Parameters for KajiyaKayParams {
     const FIELDS: &'static [Field] = &[
-        Field::new("kd", Kind::Rgb).uniform(0.0, 0.6),
-        Field::new("ks", Kind::Rgb).uniform(0.0, 0.4),
-        Field::new("exponent", Kind::Number)
-            .log_uniform(2.0, 500.0)
-            .narrow(1000.0),
-        Field::new("form", Kind::Word(&[FORMS[0].0, FORMS[1].0])).optional(),
+        Field::new("kd", Kind::Rgb, Rule::NotNegative, "Diffuse albedo.").uniform(0.0, 0.6),
+        Field::new(
+            "ks",
+            Kind::Rgb,
+            Rule::NotNegative,
+            "Specular albedo seen from the normal plane.",
+        )
+        .uniform(0.0, 0.4),
+        Field::new(
+            "exponent",
+            Kind::Number,
+            EXPONENT,
+            "Exponent of the highlight.",
+        )
+        .log_uniform(2.0, 500.0)
+        .narrow(1000.0),
+        Field::word(
+            "form",
+            Kind::Word(&[FORMS[0].0, FORMS[1].0]),
+            "Form of the highlight.",
+        )
+        .optional(),
     ];
     const PRESETS: &'static [(&'static str, Self)] = &Self::presets();
 
@@ -41,13 +59,17 @@ impl Parameters for KajiyaKayParams {
             .iter()
             .find(|(one, _)| *one == word)
             .map_or(Form::default(), |(_, form)| *form);
-        let [exponent] = values.get("exponent");
         Self::new(&KajiyaKayDesc {
-            kd: values.get("kd"),
-            ks: values.get("ks"),
-            exponent,
+            kd: values.get_at(0),
+            ks: values.get_at(1),
+            exponent: values.number_at(2),
             form,
         })
+    }
+
+    #[inline]
+    fn scaled(&self, factor: f32) -> Result<Self, ParamError> {
+        Self::scaled(self, factor)
     }
 }
 

@@ -1,16 +1,22 @@
 //! Parameters of Kajiya and Kay's model.
 
-use crate::check::{check, check_range, check_rgb, is_intensity};
 use core::f32::consts::{LN_2, PI};
 use hairis::ParamError;
+use hairis::params::Rule;
 
 /// Exponents accepted.
+pub(super) const EXPONENT: Rule = Rule::Range(EXPONENTS);
 const EXPONENTS: [f32; 2] = [1.0, 1e4];
 /// Half widths of the highlight accepted, degrees: those of the exponents.
-const WIDTHS: [f32; 2] = [0.675, 60.0];
+const WIDTHS: Rule = Rule::Degrees([0.675, 60.0]);
 
 /// Dependence of the highlight on the light's inclination.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Form {
     /// `S` is a function of `theta_i + theta_o` alone: reciprocal. The light's irradiance falls as `cos theta_i`.
     #[default]
@@ -27,15 +33,35 @@ pub enum Form {
 ///   with `B(n)` the integral of `cos^n` over `[-pi/2, pi/2]`.
 /// - Default: grey `kd` .3 and `ks` .2, exponent 80.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct KajiyaKayDesc {
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+pub struct KajiyaKayDesc<T = f32> {
     /// Diffuse albedo, linear RGB, each finite and at least 0.
-    pub kd: [f32; 3],
+    pub kd: [T; 3],
     /// Specular albedo at `theta_o = 0`, linear RGB, each finite and at least 0.
-    pub ks: [f32; 3],
+    pub ks: [T; 3],
     /// Exponent of the highlight, in `[1, 1e4]`.
-    pub exponent: f32,
+    pub exponent: T,
     /// Form of the highlight.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub form: Form,
+}
+
+impl<T: Copy> KajiyaKayDesc<T> {
+    /// The same fibre with every number converted.
+    #[inline]
+    #[must_use]
+    pub fn map<U>(&self, convert: impl Fn(T) -> U) -> KajiyaKayDesc<U> {
+        KajiyaKayDesc {
+            kd: self.kd.map(&convert),
+            ks: self.ks.map(&convert),
+            exponent: convert(self.exponent),
+            form: self.form,
+        }
+    }
 }
 
 impl KajiyaKayDesc {
@@ -62,11 +88,7 @@ impl KajiyaKayDesc {
     /// ```
     #[inline]
     pub fn with_width_deg(self, width_deg: f32) -> Result<Self, ParamError> {
-        let [least, most] = WIDTHS;
-        check(
-            (least..=most).contains(&width_deg),
-            ParamError::Degrees("width_deg", width_deg, WIDTHS),
-        )?;
+        WIDTHS.check("width_deg", &[width_deg])?;
         // ln cos w = ln(1 - 2 sin^2(w/2)): a narrow highlight loses nothing.
         let sin = libm::sinf(0.5 * width_deg * PI / 180.0);
         let exponent = -LN_2 / libm::log1pf(-2.0 * sin * sin);
@@ -109,12 +131,16 @@ impl Default for KajiyaKayDesc {
 /// Parameters of Kajiya and Kay's model that passed their checks.
 ///
 /// ```
-/// use hairis::ParamError;
 /// use hairis_variants::{KajiyaKayDesc, KajiyaKayParams};
 /// let refused = KajiyaKayParams::new(&KajiyaKayDesc { exponent: 0.5, ..KajiyaKayDesc::default() });
-/// assert_eq!(refused, Err(ParamError::Range("exponent", 0.5, [1.0, 1e4])));
+/// assert_eq!(refused.unwrap_err().to_string(), "exponent must be in [1, 10000], got 0.5");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "KajiyaKayDesc", into = "KajiyaKayDesc")
+)]
 pub struct KajiyaKayParams(KajiyaKayDesc);
 
 const BLOND: KajiyaKayParams = look([0.5, 0.36, 0.2], [0.16, 0.14, 0.11], 60.0);
@@ -142,9 +168,9 @@ impl KajiyaKayParams {
     /// 1 is legal, and gains energy.
     #[inline]
     pub fn new(desc: &KajiyaKayDesc) -> Result<Self, ParamError> {
-        check_rgb("kd", desc.kd)?;
-        check_rgb("ks", desc.ks)?;
-        check_range("exponent", desc.exponent, EXPONENTS)?;
+        Rule::NotNegative.check("kd", &desc.kd)?;
+        Rule::NotNegative.check("ks", &desc.ks)?;
+        EXPONENT.check("exponent", &[desc.exponent])?;
         Ok(Self(*desc))
     }
 
@@ -162,7 +188,7 @@ impl KajiyaKayParams {
     /// If `factor` is negative or not finite, or a product overflows.
     #[inline]
     pub fn scaled(&self, factor: f32) -> Result<Self, ParamError> {
-        check(is_intensity(factor), ParamError::Scalar("factor", factor))?;
+        Rule::NotNegative.check("factor", &[factor])?;
         let times = |rgb: [f32; 3]| rgb.map(|c| c * factor);
         Self::new(&KajiyaKayDesc {
             kd: times(self.0.kd),
@@ -225,5 +251,23 @@ impl Default for KajiyaKayParams {
     #[inline]
     fn default() -> Self {
         Self(KajiyaKayDesc::DEFAULT)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<KajiyaKayDesc> for KajiyaKayParams {
+    type Error = ParamError;
+
+    #[inline]
+    fn try_from(desc: KajiyaKayDesc) -> Result<Self, ParamError> {
+        Self::new(&desc)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<KajiyaKayParams> for KajiyaKayDesc {
+    #[inline]
+    fn from(params: KajiyaKayParams) -> Self {
+        params.0
     }
 }

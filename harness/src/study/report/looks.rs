@@ -15,7 +15,7 @@ type NamedDifference = (&'static str, fn(&Differences) -> f64);
 
 /// The default hair: sections and maps.
 pub(super) fn pictures() -> Vec<Drawing> {
-    let (hair, theta_o) = (HairParams::default(), THETA_O_DEG.to_radians());
+    let (hair, theta_o) = (HairParams::bright(), THETA_O_DEG.to_radians());
     let variants = [
         ("Cauchy, k = 1", Cauchy::PAPER),
         ("Cauchy, k = 1.177", Cauchy::HALF_WIDTH),

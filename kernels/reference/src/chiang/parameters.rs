@@ -1,8 +1,8 @@
-//! Parameters in either precision.
+//! Widths, shifts and absorption, and the choice of a lobe.
 
 use crate::Real;
 use hairis::PerLobe;
-use hairis_variants::chiang::{ChiangParams, Shifts};
+use hairis_variants::chiang::{ChiangDesc, Shifts};
 
 /// Criterion for the choice of a lobe.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -27,43 +27,41 @@ impl Selection {
     }
 }
 
-/// A [`ChiangDesc`](hairis_variants::ChiangDesc) in either precision. Nothing is checked: make it from [`ChiangParams`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChiangParameters<T> {
-    /// Longitudinal roughness.
-    pub beta_m: T,
-    /// Azimuthal roughness.
-    pub beta_n: T,
-    /// Tilt of the cuticle's scales, rad.
-    pub tilt: T,
-    /// Index of refraction.
-    pub eta: T,
-    /// Absorption per fibre radius, linear RGB.
-    pub sigma_a: [T; 3],
-    /// Formula of the lobes' shifts.
-    pub shifts: Shifts,
-}
-
-impl<T: Real> From<&ChiangParams> for ChiangParameters<T> {
-    #[inline]
-    fn from(params: &ChiangParams) -> Self {
-        let d = params.desc();
-        Self {
-            beta_m: T::from_f32(d.beta_m),
-            beta_n: T::from_f32(d.beta_n),
-            tilt: T::from_f32(d.tilt),
-            eta: T::from_f32(d.eta),
-            sigma_a: d.sigma_a.map(T::from_f32),
-            shifts: d.shifts,
-        }
-    }
-}
-
-impl<T: Real> ChiangParameters<T> {
-    /// The same fibre with the absorption of melanin: see [`ChiangDesc::with_melanin`](hairis_variants::ChiangDesc::with_melanin).
-    #[inline]
+/// What the formulas compute of the parameters, in either precision.
+pub trait ChiangFormulas<T: Real>: Sized {
+    /// The same fibre with the absorption of melanin: see [`ChiangDesc::with_melanin`].
     #[must_use]
-    pub fn with_melanin(self, eumelanin: T, pheomelanin: T) -> Self {
+    fn with_melanin(self, eumelanin: T, pheomelanin: T) -> Self;
+
+    /// The same fibre with an artist's melanin: see [`ChiangDesc::with_melanin_amount`].
+    #[must_use]
+    fn with_melanin_amount(self, amount: T, redness: T) -> Self;
+
+    /// The same fibre with the absorption of a colour: see [`ChiangDesc::with_color`].
+    #[must_use]
+    fn with_color(self, color: [T; 3]) -> Self;
+
+    /// Longitudinal variances of R, TT, TRT and the rest: `v0`, `v0 / 4`, `4 v0`, `4 v0`, with
+    /// `v0 = (.726 beta_m + .812 beta_m^2 + 3.7 beta_m^20)^2`.
+    ///
+    /// - Source: Chiang et al. 2016, section 4.
+    #[must_use]
+    fn variances(&self) -> PerLobe<T>;
+
+    /// Scale of the azimuthal logistic, rad: `sqrt(pi / 8) (.265 beta_n + 1.194 beta_n^2 + 5.372 beta_n^22)`.
+    ///
+    /// - Source: Chiang et al. 2016, section 4.
+    #[must_use]
+    fn scale(&self) -> T;
+
+    /// Shifts of `theta_i + theta_o`, rad: -2, +1, +4 and 0 tilts (d'Eon et al. 2011), or `2 p eta - 2` tilts.
+    #[must_use]
+    fn shift_angles(&self) -> PerLobe<T>;
+}
+
+impl<T: Real> ChiangFormulas<T> for ChiangDesc<T> {
+    #[inline]
+    fn with_melanin(self, eumelanin: T, pheomelanin: T) -> Self {
         let channel = |e: f64, p: f64| T::from_f64(e) * eumelanin + T::from_f64(p) * pheomelanin;
         Self {
             sigma_a: [
@@ -75,20 +73,15 @@ impl<T: Real> ChiangParameters<T> {
         }
     }
 
-    /// The same fibre with an artist's melanin: see
-    /// [`ChiangDesc::with_melanin_amount`](hairis_variants::ChiangDesc::with_melanin_amount).
     #[inline]
-    #[must_use]
-    pub fn with_melanin_amount(self, amount: T, redness: T) -> Self {
+    fn with_melanin_amount(self, amount: T, redness: T) -> Self {
         let one = T::from_f64(1.0);
         let quantity = -(one - amount).max(T::from_f64(1e-4)).ln();
         self.with_melanin(quantity * (one - redness), quantity * redness)
     }
 
-    /// The same fibre with the absorption of a colour: see [`ChiangDesc::with_color`](hairis_variants::ChiangDesc::with_color).
     #[inline]
-    #[must_use]
-    pub fn with_color(self, color: [T; 3]) -> Self {
+    fn with_color(self, color: [T; 3]) -> Self {
         let (number, n) = (T::from_f64, self.beta_n);
         let coefficients = [0.245, 5.574, -10.73, 2.532, -0.215, 5.969];
         let denominator = coefficients
@@ -104,34 +97,23 @@ impl<T: Real> ChiangParameters<T> {
         }
     }
 
-    /// Longitudinal variances of R, TT, TRT and the rest: `v0`, `v0 / 4`, `4 v0`, `4 v0`, with
-    /// `v0 = (.726 beta_m + .812 beta_m^2 + 3.7 beta_m^20)^2`.
-    ///
-    /// - Source: Chiang et al. 2016, section 4.
     #[inline]
-    #[must_use]
-    pub fn variances(&self) -> PerLobe<T> {
+    fn variances(&self) -> PerLobe<T> {
         let (number, m) = (T::from_f64, self.beta_m);
         let root = number(0.726) * m + number(0.812) * m * m + number(3.7) * m.powf(number(20.0));
         let v = root * root;
         PerLobe([v, v / number(4.0), number(4.0) * v, number(4.0) * v])
     }
 
-    /// Scale of the azimuthal logistic, rad: `sqrt(pi / 8) (.265 beta_n + 1.194 beta_n^2 + 5.372 beta_n^22)`.
-    ///
-    /// - Source: Chiang et al. 2016, section 4.
     #[inline]
-    #[must_use]
-    pub fn scale(&self) -> T {
+    fn scale(&self) -> T {
         let (number, n) = (T::from_f64, self.beta_n);
         let sum = number(0.265) * n + number(1.194) * n * n + number(5.372) * n.powf(number(22.0));
         (T::PI / number(8.0)).sqrt() * sum
     }
 
-    /// Shifts of `theta_i + theta_o`, rad: -2, +1, +4 and 0 tilts (d'Eon et al. 2011), or `2 p eta - 2` tilts.
     #[inline]
-    #[must_use]
-    pub fn shifts_rad(&self) -> PerLobe<T> {
+    fn shift_angles(&self) -> PerLobe<T> {
         let (number, tilt) = (T::from_f64, self.tilt);
         let two = number(2.0);
         let [tt, trt] = match self.shifts {

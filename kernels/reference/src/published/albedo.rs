@@ -1,6 +1,6 @@
 //! Directional albedos of the lobes.
 
-use super::HairReference;
+use super::{HairReference, colours};
 use crate::{Real, integrate};
 use hairis::{Lobe, PerLobe};
 
@@ -32,10 +32,10 @@ pub(super) fn albedo<T: Real>(book: &HairReference<T>) -> PerLobe<[T; 3]> {
         cosine,
         azimuth(T::PI, p.gamma_tt),
         cosine,
-        p.intensity_g * azimuth(p.phi_g, p.gamma_g),
+        p.i_g * azimuth(p.phi_g, p.gamma_g),
     ];
     let inclinations = [inclination(0), inclination(1), inclination(2)];
-    let colours = p.colours();
+    let colours = colours(p);
     let mut albedo = PerLobe::default();
     for lobe in Lobe::ALL {
         let area = areas[lobe.index()] * inclinations[lobe.index().min(2)];

@@ -1,9 +1,10 @@
 //! Formulas of the matched sampler [`Matched`](hairis::Matched), line by line.
 
 use super::cut::Cut;
-use super::{Angles, HairReference, Parameters, Shape};
+use super::{Angles, HairReference, Shape};
 use crate::steps::{choose, mix_pdfs, shares};
 use crate::{LobeAt, Real, Reference, ReferenceSample};
+use hairis::params::HairDesc;
 use hairis::{Lobe, LobeMask, PerLobe};
 
 /// Most bands.
@@ -26,8 +27,8 @@ const fn ends(bands: usize) -> &'static [f32] {
 ///
 /// ```
 /// use hairis::HairParams;
-/// use hairis_reference::{MatchedReference, Parameters, Reference, Shape};
-/// let parameters = Parameters::<f64>::from(&HairParams::brown());
+/// use hairis_reference::{MatchedReference, Reference, Shape};
+/// let parameters = HairParams::brown().desc().map(f64::from);
 /// let hair = MatchedReference::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0], 9);
 /// let drawn = hair.sample([0.1, 0.4, 0.7]);
 /// assert!((hair.pdf(drawn.wi) / drawn.pdf - 1.0).abs() < 1e-9);
@@ -70,7 +71,7 @@ impl<T: Real> MatchedReference<T> {
     /// If `bands` is none of these.
     #[inline]
     #[must_use]
-    pub fn prepare(parameters: &Parameters<T>, shape: Shape, wo: [T; 3], bands: usize) -> Self {
+    pub fn prepare(parameters: &HairDesc<T>, shape: Shape, wo: [T; 3], bands: usize) -> Self {
         let number = T::from_f64;
         let (zero, one, half) = (T::default(), number(1.0), number(0.5));
         let book = HairReference::prepare(parameters, shape, wo);
@@ -93,13 +94,8 @@ impl<T: Real> MatchedReference<T> {
             heights[bands - 1 - j] = heights[bands - 1 - j].max(heights[bands - j]);
         }
         let mean = |rgb: [T; 3]| (rgb[0] + rgb[1] + rgb[2]) / number(3.0);
-        let trt = mean(p.intensity_trt);
-        let intensity = PerLobe([
-            mean(p.intensity_r),
-            mean(p.intensity_tt),
-            trt,
-            trt * p.intensity_g,
-        ]);
+        let trt = mean(p.i_trt);
+        let intensity = PerLobe([mean(p.i_r), mean(p.i_tt), trt, trt * p.i_g]);
         let azimuth = PerLobe([
             number(4.0),
             number(2.0) * p.gamma_tt * transmission.area,
@@ -157,8 +153,8 @@ impl<T: Real> MatchedReference<T> {
     #[must_use]
     pub fn by_channel(self) -> Self {
         let p = &self.book.parameters;
-        let glint = p.intensity_trt.map(|i| i * p.intensity_g);
-        let intensity = PerLobe([p.intensity_r, p.intensity_tt, p.intensity_trt, glint]);
+        let glint = p.i_trt.map(|i| i * p.i_g);
+        let intensity = PerLobe([p.i_r, p.i_tt, p.i_trt, glint]);
         let mut sums = PerLobe([T::default(); 4]);
         for channel in 0..3 {
             let mut energies = PerLobe::default();

@@ -4,8 +4,9 @@ use super::support::{DEG, LargestError, direction, points, rule, sum};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
 use hairis_reference::{
-    ChiangParameters, ChiangReference, Real, Reference, Selection, bessel_i0_scaled,
+    ChiangFormulas, ChiangReference, Real, Reference, Selection, bessel_i0_scaled,
 };
+use hairis_variants::ChiangDesc;
 use hairis_variants::chiang::{ChiangParams, Shifts};
 
 pub(crate) type ChiangFiber = ChiangReference<f64>;
@@ -16,8 +17,8 @@ const THETA_O: [f64; 8] = [0.0, 20.0, -45.0, 75.0, -85.0, 89.0, 89.9, -90.0];
 const TILTS: [f64; 4] = [0.0, 2.0, -20.0, 45.0];
 const OFFSETS: [f64; 6] = [0.0, 0.3, -0.7, 0.95, 0.999_999, -1.0];
 
-pub(crate) fn clear(beta_m: f64, beta_n: f64, tilt_deg: f64) -> ChiangParameters<f64> {
-    ChiangParameters {
+pub(crate) fn clear(beta_m: f64, beta_n: f64, tilt_deg: f64) -> ChiangDesc<f64> {
+    ChiangDesc {
         beta_m,
         beta_n,
         tilt: tilt_deg * DEG,
@@ -27,16 +28,12 @@ pub(crate) fn clear(beta_m: f64, beta_n: f64, tilt_deg: f64) -> ChiangParameters
     }
 }
 
-pub(crate) fn prepare(p: &ChiangParameters<f64>, theta_o: f64, h: f64) -> ChiangFiber {
+pub(crate) fn prepare(p: &ChiangDesc<f64>, theta_o: f64, h: f64) -> ChiangFiber {
     ChiangFiber::prepare(p, Selection::Mean, direction(theta_o, 0.7), h)
 }
 
 /// Panels of `theta_i` between the discarded caps: peaks at the cones, and the poles, where M changes over `v`.
-pub(crate) fn inclinations(
-    p: &ChiangParameters<f64>,
-    fiber: &ChiangFiber,
-    edge: f64,
-) -> Vec<(f64, f64)> {
+pub(crate) fn inclinations(p: &ChiangDesc<f64>, fiber: &ChiangFiber, edge: f64) -> Vec<(f64, f64)> {
     let v = p.variances();
     let mut peaks: Vec<_> = Lobe::ALL
         .into_iter()
@@ -48,7 +45,7 @@ pub(crate) fn inclinations(
 }
 
 /// Panels of `phi_i - phi_o` over a turn: peaks and cuts of the logistics.
-pub(crate) fn azimuths(p: &ChiangParameters<f64>, fiber: &ChiangFiber) -> Vec<(f64, f64)> {
+pub(crate) fn azimuths(p: &ChiangDesc<f64>, fiber: &ChiangFiber) -> Vec<(f64, f64)> {
     let turn = 2.0 * PI;
     let centres = [Lobe::R, Lobe::TT, Lobe::TRT].map(|lobe| fiber.centre(lobe).rem_euclid(turn));
     let peaks: Vec<_> = centres
@@ -101,7 +98,7 @@ fn attenuations_of_clear_hair_sum_to_one() {
         for theta_o in THETA_O.into_iter().chain([90.0]) {
             for h in OFFSETS.into_iter().chain([1.0, 2.0]) {
                 let fiber = prepare(
-                    &ChiangParameters {
+                    &ChiangDesc {
                         eta,
                         ..clear(0.3, 0.3, 2.0)
                     },
@@ -125,7 +122,7 @@ fn attenuations_of_clear_hair_sum_to_one() {
 #[test]
 fn absorption_only_takes_away() {
     let fiber = |sigma: f64, eta| {
-        let p = ChiangParameters {
+        let p = ChiangDesc {
             eta,
             sigma_a: [sigma, 0.0, 1.0],
             ..clear(0.3, 0.3, 2.0)
@@ -147,7 +144,7 @@ fn absorption_only_takes_away() {
         0.0,
         "without a surface all is absorbed"
     );
-    let nothing = ChiangParameters {
+    let nothing = ChiangDesc {
         eta: 1.0,
         sigma_a: [f64::from(f32::MAX); 3],
         ..clear(0.3, 0.3, 2.0)
@@ -260,7 +257,7 @@ fn clear_hair_returns_all_the_light() {
 fn colours_integrate_to_the_albedo() {
     let mut worst = LargestError::default();
     for (_, preset) in ChiangParams::presets() {
-        let p = ChiangParameters::<f64>::from(&preset);
+        let p = preset.desc().map(f64::from);
         let fiber = ChiangFiber::prepare(&p, Selection::ByChannel, direction(0.6, 0.7), -0.4);
         let (theta, phi) = (
             inclinations(&p, &fiber, FRAC_PI_2 - GRAZING),
@@ -288,12 +285,12 @@ fn symmetries_hold() {
     let mut worst = LargestError::default();
     for (beta_m, beta_n) in [(0.05, 0.3), (0.3, 0.1), (1.0, 1.0)] {
         for [a, b, c] in points(300) {
-            let p = ChiangParameters {
+            let p = ChiangDesc {
                 sigma_a: [0.1, 0.5, 2.0],
                 ..clear(beta_m, beta_n, 7.0)
             };
             let (theta_o, theta_i, h) = ((a - 0.5) * 3.0, (b - 0.5) * 3.0, 2.0 * c - 1.0);
-            let value = |p: &ChiangParameters<f64>, sign_theta: f64, sign_phi: f64| {
+            let value = |p: &ChiangDesc<f64>, sign_theta: f64, sign_phi: f64| {
                 let fiber = ChiangFiber::prepare(
                     p,
                     Selection::Mean,
@@ -304,7 +301,7 @@ fn symmetries_hold() {
             };
             let here = value(&p, 1.0, 1.0);
             worst.see(value(&p, 1.0, -1.0) / here - 1.0);
-            worst.see(value(&ChiangParameters { tilt: -p.tilt, ..p }, -1.0, 1.0) / here - 1.0);
+            worst.see(value(&ChiangDesc { tilt: -p.tilt, ..p }, -1.0, 1.0) / here - 1.0);
         }
     }
     worst.assert_below(3e-14, "mirrored fibres");
@@ -342,11 +339,11 @@ fn single_precision_follows_and_is_total() {
             .into_iter()
             .flat_map(|t| OFFSETS.map(|h| (t * DEG, h)))
         {
-            let p = ChiangParameters {
+            let p = ChiangDesc {
                 sigma_a: [0.5, 0.0, 3e38],
                 ..clear(beta_m, beta_n, 2.0)
             };
-            let single = ChiangParameters {
+            let single = ChiangDesc {
                 beta_m: f32::from_f64(beta_m),
                 beta_n: f32::from_f64(beta_n),
                 tilt: f32::from_f64(p.tilt),

@@ -4,7 +4,8 @@ use super::chiang::{ChiangFiber, clear, inclinations, prepare};
 use super::support::{DEG, LargestError, cdf_gap, cells, chi_square, direction, points, rule, sum};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
-use hairis_reference::{ChiangParameters, Reference, Selection};
+use hairis_reference::{ChiangFormulas, Reference, Selection};
+use hairis_variants::ChiangDesc;
 use hairis_variants::chiang::ChiangParams;
 
 const ROUGHNESSES: [f64; 5] = [1e-3, 0.05, 0.3, 0.7, 1.0];
@@ -74,12 +75,12 @@ fn inclinations_follow_the_longitudinal_term() {
 }
 
 /// Everyday and odd fibres, with inclination and offset.
-fn fibers() -> impl Iterator<Item = (ChiangParameters<f64>, Selection, f64, f64)> {
-    let presets = ChiangParams::presets().map(|(_, preset)| ChiangParameters::<f64>::from(&preset));
+fn fibers() -> impl Iterator<Item = (ChiangDesc<f64>, Selection, f64, f64)> {
+    let presets = ChiangParams::presets().map(|(_, preset)| preset.desc().map(f64::from));
     let betas = [(0.3, 0.3), (0.05, 0.7), (1.0, 0.02)];
     let places = [(0.0, 0.0), (0.7, -0.8), (-1.45, 0.5), (1.3, 0.999)];
     let all = presets.into_iter().flat_map(move |p| {
-        betas.map(|(beta_m, beta_n)| ChiangParameters {
+        betas.map(|(beta_m, beta_n)| ChiangDesc {
             beta_m,
             beta_n,
             ..p
@@ -170,7 +171,7 @@ fn variances_are_as_stated() {
     for (name, mean, by_channel) in expected {
         let preset = presets.iter().find(|preset| preset.0 == name).unwrap().1;
         for (selection, expected) in BOTH.into_iter().zip([mean, by_channel]) {
-            let found = variances(&(&preset).into(), selection);
+            let found = variances(&preset.desc().map(f64::from), selection);
             println!("{name} {selection:?}: {found:.4?}");
             for (found, expected) in found.into_iter().zip(expected) {
                 let within = 1e-4_f64.max(1e-3 * expected);
@@ -183,7 +184,7 @@ fn variances_are_as_stated() {
     }
 }
 
-fn variances(p: &ChiangParameters<f64>, selection: Selection) -> [f64; 3] {
+fn variances(p: &ChiangDesc<f64>, selection: Selection) -> [f64; 3] {
     let luminance = |[r, g, b]: [f64; 3]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
     let coarse = |lo: f64, hi: f64, peaks: [f64; 3], width: f64| {
         let around = peaks
@@ -246,8 +247,8 @@ fn samples_pass_chi_square_on_the_sphere() {
     for ((beta_m, beta_n, theta_o, h), selection) in
         cases.into_iter().flat_map(|case| BOTH.map(|s| (case, s)))
     {
-        let brown = ChiangParameters::<f64>::from(&ChiangParams::brown());
-        let p = ChiangParameters {
+        let brown = ChiangParams::brown().desc().map(f64::from);
+        let p = ChiangDesc {
             beta_m,
             beta_n,
             tilt: 10.0 * DEG,

@@ -6,9 +6,10 @@ use super::support::{DEG, direction, points, rule, sum};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
 use hairis_reference::{
-    ChiangParameters, ChiangReference, KajiyaKayParameters, KajiyaKayReference, Reference,
-    Selection, bessel_i0_scaled, cosine_power_integral,
+    ChiangFormulas, ChiangReference, KajiyaKayReference, Reference, Selection, bessel_i0_scaled,
+    cosine_power_integral,
 };
+use hairis_variants::KajiyaKayDesc;
 use hairis_variants::KajiyaKayParams;
 use hairis_variants::chiang::{ChiangDesc, ChiangParams};
 
@@ -54,7 +55,7 @@ fn e1_cones_lie_opposite_the_fixed_direction() {
 #[test]
 fn e2_no_side_of_a_fibre_is_dark() {
     let fiber = KajiyaKayReference::<f64>::prepare(
-        &(&KajiyaKayParams::default()).into(),
+        &KajiyaKayParams::default().desc().map(f64::from),
         direction(0.3, 0.0),
     );
     let sides = [0.0, 0.3, 0.5, 0.7, 1.0]
@@ -87,9 +88,9 @@ fn e3_the_cosine_enters_once() {
         "with a cosine in S as well: {twice}"
     );
     // With it S would not be reciprocal either: it would depend on the light's inclination alone.
-    let p = KajiyaKayParameters {
+    let p = KajiyaKayDesc {
         ks: [0.0; 3],
-        ..(&KajiyaKayParams::default()).into()
+        ..KajiyaKayParams::default().desc().map(f64::from)
     };
     let value = |theta_o: f64, theta_i: f64| {
         KajiyaKayReference::prepare(&p, direction(theta_o, 0.0)).eval(direction(theta_i, 1.0))[0]
@@ -114,9 +115,9 @@ fn e4_the_highlight_is_opposite_the_viewer() {
         (printed(theta_o) - 1.0).abs() < 1e-15 && printed(mirror) < 0.4,
         "as printed it peaks at the viewer"
     );
-    let p = KajiyaKayParameters {
+    let p = KajiyaKayDesc {
         kd: [0.0; 3],
-        ..(&KajiyaKayParams::default()).into()
+        ..KajiyaKayParams::default().desc().map(f64::from)
     };
     let fiber = KajiyaKayReference::<f64>::prepare(&p, direction(theta_o, 0.0));
     let [at_mirror, at_viewer] = [mirror, theta_o].map(|t| fiber.eval(direction(t, 0.0))[0]);
@@ -216,12 +217,8 @@ fn e8_the_printed_u_overflows() {
             ..ChiangDesc::default()
         })
         .unwrap();
-        let fiber = ChiangReference::<f32>::prepare(
-            &(&params).into(),
-            Selection::Mean,
-            [0.0, 1.0, 0.0],
-            0.0,
-        );
+        let fiber =
+            ChiangReference::<f32>::prepare(params.desc(), Selection::Mean, [0.0, 1.0, 0.0], 0.0);
         (
             fiber.sample_cone(Lobe::TT, xi),
             fiber.sample_cone(Lobe::R, xi),
@@ -296,7 +293,7 @@ fn e9_the_azimuth_is_not_drawn_from_the_claimed_density() {
 
 #[test]
 fn e10_the_weight_needs_the_density_of_all_lobes() {
-    let p = ChiangParameters::<f64>::from(&ChiangParams::brown());
+    let p = ChiangParams::brown().desc().map(f64::from);
     let fiber = prepare(&p, 0.5, 0.4);
     let (albedo, chosen) = (fiber.albedo(), fiber.probabilities());
     let returned: [f64; 3] = core::array::from_fn(|c| albedo.0.iter().map(|a| a[c]).sum());

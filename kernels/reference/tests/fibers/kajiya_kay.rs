@@ -5,9 +5,8 @@ use super::support::{
 };
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
-use hairis_reference::{
-    KajiyaKayParameters, KajiyaKayReference, Real, Reference, cosine_power_integral,
-};
+use hairis_reference::{KajiyaKayReference, Real, Reference, cosine_power_integral};
+use hairis_variants::KajiyaKayDesc;
 use hairis_variants::kajiya_kay::{Form, KajiyaKayParams};
 
 type KajiyaKayFiber = KajiyaKayReference<f64>;
@@ -18,8 +17,8 @@ const THETA_O: [f64; 9] = [0.0, 20.0, -45.0, 60.0, 75.0, -85.0, 89.0, 89.9, -90.
 const SPECULAR: Lobe = Lobe::slot(1);
 const GRAZING: f64 = 1.000_01e-5;
 
-fn parameters(exponent: f64, form: Form) -> KajiyaKayParameters<f64> {
-    KajiyaKayParameters {
+fn parameters(exponent: f64, form: Form) -> KajiyaKayDesc<f64> {
+    KajiyaKayDesc {
         kd: [0.3, 0.2, 0.1],
         ks: [0.2, 0.25, 0.3],
         exponent,
@@ -28,8 +27,8 @@ fn parameters(exponent: f64, form: Form) -> KajiyaKayParameters<f64> {
 }
 
 /// The highlight alone.
-fn specular(exponent: f64, form: Form) -> KajiyaKayParameters<f64> {
-    KajiyaKayParameters {
+fn specular(exponent: f64, form: Form) -> KajiyaKayDesc<f64> {
+    KajiyaKayDesc {
         kd: [0.0; 3],
         ks: [1.0; 3],
         ..parameters(exponent, form)
@@ -38,8 +37,8 @@ fn specular(exponent: f64, form: Form) -> KajiyaKayParameters<f64> {
 
 /// (parameters, `theta_o`) over the grid, `theta_o` in radians.
 fn grid(
-    build: fn(f64, Form) -> KajiyaKayParameters<f64>,
-) -> impl Iterator<Item = (KajiyaKayParameters<f64>, f64)> {
+    build: fn(f64, Form) -> KajiyaKayDesc<f64>,
+) -> impl Iterator<Item = (KajiyaKayDesc<f64>, f64)> {
     let cases = FORMS
         .into_iter()
         .flat_map(|form| EXPONENTS.map(|exponent| (exponent, form)));
@@ -252,7 +251,7 @@ fn the_highlights_variance_is_as_stated() {
         (20.0, [0.001, 0.001, 0.007, 0.16]),
         (80.0, [0.000, 0.000, 0.000, 0.05]),
     ];
-    let variance = |p: &KajiyaKayParameters<f64>, theta_o: f64| {
+    let variance = |p: &KajiyaKayDesc<f64>, theta_o: f64| {
         let fiber = KajiyaKayFiber::prepare(p, direction(theta_o, 0.0));
         let moment = |t: f64| {
             let (value, pdf) = fiber.eval_pdf(direction(t, 0.0));
@@ -323,7 +322,7 @@ fn samples_pass_chi_square_on_the_sphere() {
 fn single_precision_follows_and_is_total() {
     let mut worst = LargestError::default();
     for (p, theta_o) in grid(parameters) {
-        let single = KajiyaKayParameters {
+        let single = KajiyaKayDesc {
             kd: p.kd.map(f32::from_f64),
             ks: p.ks.map(f32::from_f64),
             exponent: f32::from_f64(p.exponent),
@@ -358,7 +357,7 @@ fn single_precision_follows_and_is_total() {
         }
     }
     worst.assert_below(1.5e-7, "f32 over f64, by exponent");
-    let nothing = KajiyaKayParameters {
+    let nothing = KajiyaKayDesc {
         kd: [0.0; 3],
         ks: [0.0; 3],
         ..parameters(80.0, Form::Reciprocal)
@@ -371,7 +370,7 @@ fn single_precision_follows_and_is_total() {
         "nothing scatters"
     );
     let bright = KajiyaKayParams::default().scaled(1e37).unwrap();
-    let bright = KajiyaKayReference::<f32>::prepare(&(&bright).into(), [0.0, 1.0, 0.0]);
+    let bright = KajiyaKayReference::<f32>::prepare(bright.desc(), [0.0, 1.0, 0.0]);
     assert!(
         bright.sample([0.9, 0.5, 0.5]).weight[0].is_finite(),
         "bright colours"

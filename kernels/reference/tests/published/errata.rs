@@ -4,7 +4,8 @@ use super::{DEG, default_set, direction};
 use crate::quadrature::{integrate, panels};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
-use hairis_reference::{HairReference, Parameters, Reference, Shape};
+use hairis::params::HairDesc;
+use hairis_reference::{HairReference, Reference, Shape};
 
 /// A, B of section 3.2.1 as printed, without the half.
 fn printed_bounds(alpha: f64, beta: f64, theta_o: f64) -> (f64, f64) {
@@ -94,7 +95,7 @@ fn e1_printed_samples_leave_the_sphere() {
         (printed_cdf(sample((a, b), 0.3)) - 0.3).abs() > 0.05,
         "the printed cdf is another one"
     );
-    let p = Parameters {
+    let p = HairDesc {
         alpha: [alpha; 3],
         beta: [beta; 3],
         ..default_set()
@@ -122,7 +123,7 @@ fn e2_row_r_of_table_2_has_the_width_of_r() {
     // beta_g of the glint, the only thing printed so, is that of TRT: R would return twice its energy.
     let p = default_set();
     let hair = HairReference::prepare(&p, Shape::Gaussian, [0.0, 1.0, 0.0]);
-    let share = hair.energies()[Lobe::R] / (4.0 * p.intensity_r[0]);
+    let share = hair.energies()[Lobe::R] / (4.0 * p.i_r[0]);
     assert!(
         (energy_ratio(p.beta[0], share) - 1.0).abs() < 1e-10,
         "with beta_r the energy is the integral"
@@ -152,7 +153,7 @@ fn e2_the_cauchy_antiderivative_needs_a_half() {
 
 #[test]
 fn e3_the_glint_has_no_density_beyond_a_right_angle() {
-    let mass = |p: &Parameters<f64>, printed: bool| {
+    let mass = |p: &HairDesc<f64>, printed: bool| {
         let hair = HairReference::prepare(p, Shape::Gaussian, [0.0, 1.0, 0.0]);
         let [c, d] = [FRAC_PI_2, 0.0].map(|end| ((end - p.phi_g) / p.gamma_g).atan());
         let ends = panels(0.0, PI, &[(p.phi_g, p.gamma_g), (FRAC_PI_2, PI)]);
@@ -167,7 +168,7 @@ fn e3_the_glint_has_no_density_beyond_a_right_angle() {
             }
         })
     };
-    let example = Parameters {
+    let example = HairDesc {
         phi_g: 0.61,
         gamma_g: 0.17,
         ..default_set()
@@ -187,7 +188,7 @@ fn e3_the_glint_has_no_density_beyond_a_right_angle() {
         .into_iter()
         .flat_map(|g| [20.0, 35.0, 45.0].map(|phi_g| (g, phi_g)))
     {
-        let p = Parameters {
+        let p = HairDesc {
             phi_g: phi_g * DEG,
             gamma_g: gamma_g * DEG,
             ..default_set()
@@ -209,7 +210,7 @@ fn e3_the_glint_has_no_density_beyond_a_right_angle() {
 #[test]
 fn e3_a_cut_glint_leaves_its_tail_to_a_lobe_that_vanishes() {
     // Second moment of the azimuth of TRT and glint alone, up to `gap` from pi: every decade adds the same amount.
-    let p = Parameters {
+    let p = HairDesc {
         gamma_g: 20.0 * DEG,
         phi_g: 45.0 * DEG,
         ..default_set()
@@ -219,8 +220,7 @@ fn e3_a_cut_glint_leaves_its_tail_to_a_lobe_that_vanishes() {
     let decade = |gap: f64, density: &dyn Fn(f64) -> f64| {
         let ends = panels(PI - 10.0 * gap, PI - gap, &[(PI, gap)]);
         integrate(&ends, |phi| {
-            let n =
-                (phi / 2.0).cos() + p.intensity_g * Shape::Cauchy.bell(p.gamma_g, phi - p.phi_g);
+            let n = (phi / 2.0).cos() + p.i_g * Shape::Cauchy.bell(p.gamma_g, phi - p.phi_g);
             n * n / density(phi)
         })
     };
@@ -254,12 +254,12 @@ fn e4_energies_hold_for_bells_of_peak_one() {
         })
     };
     let mean = |rgb: [f64; 3]| rgb.iter().sum::<f64>() / 3.0;
-    let trt = line(p.beta[2]) * mean(p.intensity_trt);
+    let trt = line(p.beta[2]) * mean(p.i_trt);
     let integrals = [
-        line(p.beta[0]) * 4.0 * mean(p.intensity_r),
-        line(p.beta[1]) * line(p.gamma_tt) * mean(p.intensity_tt),
+        line(p.beta[0]) * 4.0 * mean(p.i_r),
+        line(p.beta[1]) * line(p.gamma_tt) * mean(p.i_tt),
         trt * 4.0,
-        trt * 2.0 * line(p.gamma_g) * p.intensity_g,
+        trt * 2.0 * line(p.gamma_g) * p.i_g,
     ];
     for (lobe, integral) in Lobe::ALL.into_iter().zip(integrals) {
         assert!(
@@ -269,7 +269,7 @@ fn e4_energies_hold_for_bells_of_peak_one() {
         );
     }
     // A Gaussian of unit area has 1 in place of each sqrt(2 pi) b: R's share of R and TRT alike is then 1/2.
-    let unit_area = 4.0 * mean(p.intensity_r);
+    let unit_area = 4.0 * mean(p.i_r);
     assert!(
         energies[Lobe::R] < 0.5 * unit_area,
         "the printed energy does not fit a bell of unit area"

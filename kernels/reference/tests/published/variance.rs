@@ -2,7 +2,8 @@
 
 use super::{DEG, SHAPES, default_set, direction, sphere};
 use hairis::HairParams;
-use hairis_reference::{HairReference, Parameters, Reference, Shape};
+use hairis::params::HairDesc;
+use hairis_reference::{HairReference, Reference, Shape};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -12,7 +13,7 @@ fn luminance([r, g, b]: [f64; 3]) -> f64 {
 }
 
 /// Albedo (luminance), then the relative variance of a uniform sample and of one of the published sampler.
-fn moments(p: &Parameters<f64>, shape: Shape, theta_o: f64) -> [f64; 3] {
+fn moments(p: &HairDesc<f64>, shape: Shape, theta_o: f64) -> [f64; 3] {
     let hair = HairReference::prepare(p, shape, direction(theta_o, 0.0));
     let [theta, phi] = sphere(p, theta_o);
     let (mut mean, mut uniform, mut published) = (0.0, 0.0, 0.0);
@@ -66,7 +67,7 @@ fn published_figures_are_reproduced() {
 #[test]
 fn e7_uniform_sampling_beats_it_on_rough_hair() {
     let beta = [20.0, 10.0, 40.0].map(|beta| beta * DEG);
-    let rough = Parameters {
+    let rough = HairDesc {
         beta,
         gamma_tt: 45.0 * DEG,
         ..default_set()
@@ -93,7 +94,7 @@ fn importance_sampled_albedo_is_the_integral() {
         .into_iter()
         .flat_map(|shape| presets.map(|preset| (shape, preset)))
     {
-        let p = Parameters::<f64>::from(&params);
+        let p = params.desc().map(f64::from);
         let theta_o = -50.0 * DEG;
         let [albedo, _, variance] = moments(&p, shape, theta_o);
         let hair = HairReference::prepare(&p, shape, direction(theta_o, 0.0));

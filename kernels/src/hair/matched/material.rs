@@ -93,10 +93,10 @@ fn intensity(params: &HairParams) -> [[f32; 3]; 4] {
     let d = params.desc();
     let double = |rgb: [f32; 3], factor: f32| rgb.map(|c| f64::from(c) * f64::from(factor));
     let all = [
-        double(d.intensity_r, 1.0),
-        double(d.intensity_tt, 1.0),
-        double(d.intensity_trt, 1.0),
-        double(d.intensity_trt, d.intensity_g),
+        double(d.i_r, 1.0),
+        double(d.i_tt, 1.0),
+        double(d.i_trt, 1.0),
+        double(d.i_trt, d.i_g),
     ];
     let mean = |rgb: &[f64; 3]| (rgb[0] + rgb[1] + rgb[2]) / 3.0;
     let largest = all.iter().map(mean).fold(0.0, f64::max);

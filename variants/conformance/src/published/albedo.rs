@@ -11,7 +11,7 @@ use glam::Vec3;
 use hairis::params::HairDesc;
 use hairis::simd::Level;
 use hairis::{HairParams, Lobe, PerLobe};
-use hairis_reference::{Parameters, Reference};
+use hairis_reference::Reference;
 
 /// Integral of each lobe's value times the cosine: a product of two line integrals, as the lobes are products.
 fn integrals(reference: &dyn Reference<f64>, point: &Point) -> PerLobe<f64> {
@@ -61,12 +61,7 @@ pub fn albedo_is_the_integral(tested: &Tested) {
             let got = material.prepare(point.wo).albedo();
             let want = integrals(reference, point);
             let d = point.params.desc();
-            let colors = PerLobe([
-                d.intensity_r,
-                d.intensity_tt,
-                d.intensity_trt,
-                d.intensity_trt,
-            ]);
+            let colors = PerLobe([d.i_r, d.i_tt, d.i_trt, d.i_trt]);
             for lobe in Lobe::ALL {
                 for c in 0..3 {
                     let want = want[lobe] * f64::from(colors[lobe][c]);
@@ -90,46 +85,40 @@ pub fn albedo_is_the_integral(tested: &Tested) {
 /// Materials of any widths and shifts, and those where quadrature and scans have gone wrong.
 fn any_widths() -> Vec<HairParams> {
     let mut draws = Draws(33);
+    let default = *HairParams::bright().desc();
     let black = [0.0; 3];
     let small = HairDesc {
-        alpha_r: -1.494,
-        alpha_tt: -1.494,
-        alpha_trt: -1.494,
-        ..HairDesc::default()
+        alpha: [-1.494; 3],
+        ..*HairParams::bright().desc()
     };
     let small = HairDesc {
-        beta_r: 0.0847,
-        beta_tt: 0.0847,
-        beta_trt: 0.0847,
+        beta: [0.0847; 3],
         ..small
     };
     let bright = HairDesc {
-        alpha_tt: 1.356_512_9,
-        beta_tt: 3.96e-4,
-        intensity_tt: [7318.0; 3],
-        ..HairDesc::default()
-    };
-    let bright = HairDesc {
-        intensity_r: black,
-        intensity_trt: black,
-        ..bright
+        alpha: [default.alpha[0], 1.356_512_9, default.alpha[2]],
+        beta: [default.beta[0], 3.96e-4, default.beta[2]],
+        i_tt: [7318.0; 3],
+        i_r: black,
+        i_trt: black,
+        ..default
     };
     let grazing = HairDesc {
-        alpha_trt: 0.0,
-        beta_trt: 1e-4,
+        alpha: [default.alpha[0], default.alpha[1], 0.0],
+        beta: [default.beta[0], default.beta[1], 1e-4],
         gamma_tt: 1e-4,
         gamma_g: 1e-4,
-        ..HairDesc::default()
+        ..*HairParams::bright().desc()
     };
     let grazing = HairDesc {
-        intensity_trt: [3283.0, 1565.0, 5134.0],
-        intensity_g: 0.848,
+        i_trt: [3283.0, 1565.0, 5134.0],
+        i_g: 0.848,
         phi_g: 0.0,
         ..grazing
     };
     let grazing = HairDesc {
-        intensity_r: black,
-        intensity_tt: black,
+        i_r: black,
+        i_tt: black,
         ..grazing
     };
     let known = [small, bright, grazing].map(|desc| HairParams::new(&desc).unwrap());
@@ -155,7 +144,7 @@ fn off_pole((off, side): (f64, f64)) -> (Vec3, f64) {
 
 /// The albedo of each lobe but for its colour, from the formulas of its two factors: as exact for lobes of any width, seen from
 /// any inclination.
-fn exact(tested: &Tested, p: &Parameters<f64>, theta_o: f64) -> PerLobe<f64> {
+fn exact(tested: &Tested, p: &HairDesc<f64>, theta_o: f64) -> PerLobe<f64> {
     let to_pole = FRAC_PI_2 - theta_o.abs();
     let inclination = [0, 1, 2].map(|l| {
         let centre = 2.0 * p.alpha[l] - theta_o;
@@ -180,7 +169,7 @@ fn exact(tested: &Tested, p: &Parameters<f64>, theta_o: f64) -> PerLobe<f64> {
         4.0 * r,
         azimuth(PI, p.gamma_tt) * tt,
         4.0 * trt,
-        azimuth(p.phi_g, p.gamma_g) * p.intensity_g * trt,
+        azimuth(p.phi_g, p.gamma_g) * p.i_g * trt,
     ])
 }
 
@@ -196,12 +185,7 @@ pub fn albedo_of_any_width_is_the_integral(tested: &Tested) {
                 let (wo, theta_o) = off_pole(at);
                 let (got, want) = (material.prepare(wo).albedo(), exact(tested, &p, theta_o));
                 let d = params.desc();
-                let colors = PerLobe([
-                    d.intensity_r,
-                    d.intensity_tt,
-                    d.intensity_trt,
-                    d.intensity_trt,
-                ]);
+                let colors = PerLobe([d.i_r, d.i_tt, d.i_trt, d.i_trt]);
                 for lobe in Lobe::ALL.into_iter().filter(|lobe| colors[*lobe][0] > 0.0) {
                     let got = f64::from(got[lobe][0]) / f64::from(colors[lobe][0]);
                     // A lobe that lies off the sphere returns next to nothing.
@@ -241,8 +225,7 @@ pub fn conserving_hair_returns_at_most_what_it_receives(tested: &Tested) {
                     exact(tested, &p, theta_o),
                 );
                 for (c, got) in got.into_iter().enumerate() {
-                    let [i_r, i_tt, i_trt] =
-                        [d.intensity_r[c], d.intensity_tt[c], d.intensity_trt[c]].map(f64::from);
+                    let [i_r, i_tt, i_trt] = [d.i_r[c], d.i_tt[c], d.i_trt[c]].map(f64::from);
                     let want = (r * i_r + tt * i_tt + (trt + glint) * i_trt).min(1.0);
                     worst.see((got - want).abs() / want.max(1e-6), || {
                         format!("{got} for {want}: {theta_o} {d:?}")
@@ -285,8 +268,7 @@ pub fn max_albedo_bounds_lobes_of_any_width(tested: &Tested) {
             for at in any_inclinations() {
                 let PerLobe([r, tt, trt, glint]) = exact(tested, &p, off_pole(at).1);
                 for c in 0..3 {
-                    let [i_r, i_tt, i_trt] =
-                        [d.intensity_r[c], d.intensity_tt[c], d.intensity_trt[c]].map(f64::from);
+                    let [i_r, i_tt, i_trt] = [d.i_r[c], d.i_tt[c], d.i_trt[c]].map(f64::from);
                     seen = seen.max(r * i_r + tt * i_tt + (trt + glint) * i_trt);
                 }
             }

@@ -38,14 +38,11 @@ fn assert_sound(sample: &Sample, at: &str) {
 }
 
 fn widths(width: f32) -> HairDesc {
-    let (beta_r, beta_tt, beta_trt) = (width, width, width);
     HairDesc {
-        beta_r,
-        beta_tt,
-        beta_trt,
+        beta: [width; 3],
         gamma_tt: width,
         gamma_g: width,
-        ..HairDesc::default()
+        ..*HairParams::bright().desc()
     }
 }
 
@@ -67,9 +64,7 @@ pub fn ends_of_xi_give_sound_samples_of_every_lobe(tested: &Tested) {
             (0.3, 0.7),
         ] {
             let desc = HairDesc {
-                alpha_r: alpha,
-                alpha_tt: -alpha,
-                alpha_trt: alpha,
+                alpha: [alpha, -alpha, alpha],
                 phi_g,
                 ..desc
             };
@@ -101,9 +96,9 @@ pub fn ends_of_xi_give_sound_samples_of_every_lobe(tested: &Tested) {
 pub fn nothing_is_negative_on_the_seam(tested: &Tested) {
     let black = [0.0; 3];
     let colours = HairDesc {
-        intensity_r: [0.0, 0.0, 1.0],
-        intensity_tt: black,
-        intensity_trt: [1.0, 1.0, 0.0],
+        i_r: [0.0, 0.0, 1.0],
+        i_tt: black,
+        i_trt: [1.0, 1.0, 0.0],
         ..widths(0.3)
     };
     let bsdf = |wo| {
@@ -194,7 +189,7 @@ pub fn a_direction_just_off_the_axis_has_a_density(tested: &Tested) {
 }
 
 pub fn vectors_that_are_no_direction_give_zero(tested: &Tested) {
-    let bsdf = material(tested, &HairDesc::default()).prepare(Vec3::new(0.6, 0.8, 0.0));
+    let bsdf = material(tested, &*HairParams::bright().desc()).prepare(Vec3::new(0.6, 0.8, 0.0));
     let odd = [
         Vec3::new(2.01, 0.1, 0.0),
         Vec3::new(0.0, -2.5, 0.0),
@@ -223,7 +218,7 @@ pub fn the_seam_is_no_edge(tested: &Tested) {
     // phi = pi: TT peaks, R and TRT-g vanish, and both sides are one.
     for (y, z) in [(1.0, 0.0), (0.0, 1.0), (0.6, -0.8)] {
         let wo = Vec3::new(0.0, y, z);
-        let bsdf = material(tested, &HairDesc::default()).prepare(wo);
+        let bsdf = material(tested, &*HairParams::bright().desc()).prepare(wo);
         let on = bsdf.lobes(-wo);
         assert!(
             on[Lobe::R].value.abs() < 1e-7 && on[Lobe::TRT].pdf.abs() < 1e-7,
@@ -248,7 +243,7 @@ pub fn the_seam_is_no_edge(tested: &Tested) {
 }
 
 pub fn a_zero_wo_counts_as_the_normal_plane(tested: &Tested) {
-    let material = material(tested, &HairDesc::default());
+    let material = material(tested, &*HairParams::bright().desc());
     let wi = Vec3::new(0.3, 0.5, 0.7).normalize();
     let zero = material.prepare(Vec3::ZERO).eval_pdf(wi);
     assert_eq!(zero, material.prepare(Vec3::Y).eval_pdf(wi), "wo of zero");
@@ -269,55 +264,43 @@ pub fn lobes_without_energy_are_never_drawn(tested: &Tested) {
     let black = [0.0; 3];
     let base = widths(0.3);
     let cases = [
+        (HairDesc { i_r: black, ..base }, [false, true, true, true]),
         (
             HairDesc {
-                intensity_r: black,
-                ..base
-            },
-            [false, true, true, true],
-        ),
-        (
-            HairDesc {
-                intensity_tt: black,
+                i_tt: black,
                 ..base
             },
             [true, false, true, true],
         ),
         (
             HairDesc {
-                intensity_trt: black,
+                i_trt: black,
                 ..base
             },
             [true, true, false, false],
         ),
+        (HairDesc { i_g: 0.0, ..base }, [true, true, true, false]),
         (
             HairDesc {
-                intensity_g: 0.0,
-                ..base
-            },
-            [true, true, true, false],
-        ),
-        (
-            HairDesc {
-                intensity_r: black,
-                intensity_trt: black,
+                i_r: black,
+                i_trt: black,
                 ..base
             },
             [false, true, false, false],
         ),
         (
             HairDesc {
-                intensity_tt: black,
-                intensity_trt: black,
+                i_tt: black,
+                i_trt: black,
                 ..base
             },
             [true, false, false, false],
         ),
         (
             HairDesc {
-                intensity_r: black,
-                intensity_tt: black,
-                intensity_g: 0.0,
+                i_r: black,
+                i_tt: black,
+                i_g: 0.0,
                 ..base
             },
             [false, false, true, false],
@@ -354,10 +337,10 @@ pub fn lobes_without_energy_are_never_drawn(tested: &Tested) {
 pub fn black_hair_scatters_and_samples_nothing(tested: &Tested) {
     let black = [0.0; 3];
     let desc = HairDesc {
-        intensity_r: black,
-        intensity_tt: black,
-        intensity_trt: black,
-        ..HairDesc::default()
+        i_r: black,
+        i_tt: black,
+        i_trt: black,
+        ..*HairParams::bright().desc()
     };
     let material = material(tested, &desc);
     let bsdf = material.prepare(Vec3::Y);
@@ -407,8 +390,9 @@ pub fn grazing_samples_are_discarded(tested: &Tested) {
 
 /// Products of components next to nothing left the range of a float, and every result was the largest one.
 pub fn an_azimuth_next_to_nothing_is_still_an_azimuth(tested: &Tested) {
-    let bsdf = material(tested, &HairDesc::default()).prepare(Vec3::new(1.0, 1e-15, 0.0));
-    let reference = material(tested, &HairDesc::default()).prepare(Vec3::new(1.0, 1e-6, 0.0));
+    let bsdf = material(tested, &*HairParams::bright().desc()).prepare(Vec3::new(1.0, 1e-15, 0.0));
+    let reference =
+        material(tested, &*HairParams::bright().desc()).prepare(Vec3::new(1.0, 1e-6, 0.0));
     for wi in [
         Vec3::new(1.0, 2e-5, 0.0),
         Vec3::new(0.6, 0.8, 0.0),
@@ -463,14 +447,14 @@ pub fn a_direction_next_to_the_axis_is_still_a_direction(tested: &Tested) {
 /// The strength of the glints and their colour may each be absurd where their product is not.
 pub fn absurd_glints_of_a_faint_colour_do_not_overflow(tested: &Tested) {
     let usual = HairDesc {
-        intensity_g: 2.0,
-        intensity_trt: [0.15; 3],
+        i_g: 2.0,
+        i_trt: [0.15; 3],
         phi_g: PI,
-        ..HairDesc::default()
+        ..*HairParams::bright().desc()
     };
     let absurd = HairDesc {
-        intensity_g: 3e37,
-        intensity_trt: [1e-38; 3],
+        i_g: 3e37,
+        i_trt: [1e-38; 3],
         ..usual
     };
     let [usual, absurd] = [usual, absurd].map(|desc| material(tested, &desc).prepare(Vec3::Y));

@@ -29,11 +29,11 @@ pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one(tested: &Tested) {
     let mut draws = Draws(61);
     let only = LobeMask::of(&[Lobe::TT]);
     for wo in [Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.96, 0.0, 0.28)] {
-        let usual = bsdf(tested, &HairDesc::default(), wo).with_lobes(only);
+        let usual = bsdf(tested, &*HairParams::bright().desc(), wo).with_lobes(only);
         for intensity in [1e-10, 1e-30, 1e-37, 1e-39, 1e-42, 1e-45] {
             let desc = HairDesc {
-                intensity_tt: [intensity; 3],
-                ..HairDesc::default()
+                i_tt: [intensity; 3],
+                ..*HairParams::bright().desc()
             };
             let faint = bsdf(tested, &desc, wo).with_lobes(only);
             for _ in 0..200 {
@@ -71,6 +71,7 @@ pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one(tested: &Tested) {
 pub fn a_lobe_off_the_sphere_has_the_density_it_is_drawn_with(tested: &Tested) {
     let black = [0.0; 3];
     let mut seen = 0;
+    let default = *HairParams::bright().desc();
     for (alpha_trt, beta_trt) in [
         (-FRAC_PI_2, 0.063),
         (-FRAC_PI_2, 0.0628),
@@ -79,12 +80,12 @@ pub fn a_lobe_off_the_sphere_has_the_density_it_is_drawn_with(tested: &Tested) {
         (1.4, 0.1),
     ] {
         let desc = HairDesc {
-            intensity_r: black,
-            intensity_tt: black,
-            intensity_g: 0.0,
-            alpha_trt,
-            beta_trt,
-            ..HairDesc::default()
+            i_r: black,
+            i_tt: black,
+            i_g: 0.0,
+            alpha: [default.alpha[0], default.alpha[1], alpha_trt],
+            beta: [default.beta[0], default.beta[1], beta_trt],
+            ..*HairParams::bright().desc()
         };
         let bsdf = bsdf(tested, &desc, Vec3::Y);
         for wi in [

@@ -12,19 +12,17 @@ use hairis_reference::{MatchedReference, Reference};
 /// Hair with `beta_r` from 0.5 to 60 degrees and all else as wide as it is found, seen from up to 89.9 degrees.
 fn hair(draws: &mut Draws) -> (HairParams, f64) {
     let degrees = draws.scale(0.5, 60.0);
-    let [beta_r, beta_tt, beta_trt] = [1.0, 0.5, 2.0].map(|k| narrow((k * degrees).to_radians()));
+    let beta = [1.0, 0.5, 2.0].map(|k| narrow((k * degrees).to_radians()));
     let mut angle = |lo: f64, hi: f64| narrow(draws.scale(lo, hi).to_radians());
     let (gamma_tt, gamma_g, phi_g) = (angle(1.0, 60.0), angle(1.0, 40.0), angle(10.0, 80.0));
-    let intensity_g = narrow(draws.scale(0.1, 10.0));
+    let i_g = narrow(draws.scale(0.1, 10.0));
     let desc = HairDesc {
-        beta_r,
-        beta_tt,
-        beta_trt,
+        beta,
         gamma_tt,
         gamma_g,
         phi_g,
-        intensity_g,
-        ..HairDesc::default()
+        i_g,
+        ..*HairParams::bright().desc()
     };
     let theta_o = draws.sign() * 89.9_f64.min(draws.between(0.0, 100.0));
     (HairParams::new(&desc).unwrap(), theta_o.to_radians())

@@ -121,12 +121,7 @@ pub fn a_lobe_is_colored_by_its_parameters(tested: &Tested) {
         let d = point.params.desc();
         let wi = point.directions(1)[0];
         let lobes = bsdf.lobes(wi);
-        let colors = [
-            d.intensity_r,
-            d.intensity_tt,
-            d.intensity_trt,
-            d.intensity_trt,
-        ];
+        let colors = [d.i_r, d.i_tt, d.i_trt, d.i_trt];
         for (lobe, color) in Lobe::ALL.into_iter().zip(colors) {
             assert_eq!(lobes[lobe].color, color, "color of {lobe:?}");
         }

@@ -402,7 +402,7 @@ pub fn lobes_and_albedo_agree_with_one_lane(tested: &Tested) {
 pub fn a_hit_is_its_direction(tested: &Tested) {
     // The published model ignores the offset across the fibre.
     let model = tested.model();
-    let material = Material::new(model, &hairis::HairParams::default());
+    let material = Material::new(model, &hairis::HairParams::bright());
     let wo = Vec3::new(0.6, 0.8, 0.0);
     let plain = format!("{:?}", material.prepare(wo));
     assert_eq!(

@@ -171,7 +171,7 @@ pub fn a_sample_agrees_with_eval_and_pdf(tested: &Tested) {
         for _ in 0..10_000 {
             let params = draws.params(10.0);
             let d = params.desc();
-            let width = [d.beta_r, d.beta_tt, d.beta_trt, d.gamma_tt, d.gamma_g]
+            let width = [d.beta[0], d.beta[1], d.beta[2], d.gamma_tt, d.gamma_g]
                 .into_iter()
                 .fold(4.0, f32::min)
                 * factor;
@@ -243,7 +243,7 @@ pub fn eval_is_reciprocal(tested: &Tested) {
 pub fn every_lobe_has_a_density_of_its_own(tested: &Tested) {
     // The sum over lobes of probability times pdf is what `sample` draws from: none may go below 0 or be missing.
     let model = tested.model();
-    let bsdf = Material::new(model, &HairParams::default()).prepare(Vec3::new(0.6, 0.8, 0.0));
+    let bsdf = Material::new(model, &HairParams::bright()).prepare(Vec3::new(0.6, 0.8, 0.0));
     let mut draws = Draws(52);
     let mut seen = [0; 4];
     for _ in 0..10_000 {

@@ -28,7 +28,7 @@ pub fn samples_next_to_the_seam_report_their_own_direction(tested: &Tested) {
             gamma_tt,
             gamma_g,
             phi_g,
-            ..HairDesc::default()
+            ..*HairParams::bright().desc()
         };
         let params = HairParams::new(&params).unwrap();
         for (theta_o, phi_o) in [

@@ -23,14 +23,11 @@ impl<P> Family<P> {
 }
 
 fn widths(width: f32) -> HairDesc {
-    let (beta_r, beta_tt, beta_trt) = (width, width, width);
     HairDesc {
-        beta_r,
-        beta_tt,
-        beta_trt,
+        beta: [width; 3],
         gamma_tt: width,
         gamma_g: width,
-        ..HairDesc::default()
+        ..*HairParams::bright().desc()
     }
 }
 
@@ -51,28 +48,26 @@ impl<P: FamilyModel> Subject for Family<P> {
 
     fn materials(&self) -> Materials<Self> {
         let tilted = HairDesc {
-            alpha_r: 0.2,
-            alpha_tt: -0.15,
-            alpha_trt: -0.35,
+            alpha: [0.2, -0.15, -0.35],
             phi_g: 0.7,
             ..widths(0.3)
         };
         let black = HairDesc {
-            intensity_r: [0.0; 3],
-            intensity_tt: [0.0; 3],
-            intensity_trt: [0.0; 3],
+            i_r: [0.0; 3],
+            i_tt: [0.0; 3],
+            i_trt: [0.0; 3],
             ..widths(0.3)
         };
         let narrow = widths(narrow(0.5_f64.to_radians()));
         vec![
-            ("default", HairParams::default()),
+            ("default", HairParams::bright()),
             ("brown", HairParams::brown()),
             ("tilted", material(&tilted)),
             ("half a degree", material(&narrow)),
             (
                 "sixty degrees",
                 material(&HairDesc {
-                    intensity_g: 5.0,
+                    i_g: 5.0,
                     ..widths(1.047)
                 }),
             ),
@@ -83,16 +78,14 @@ impl<P: FamilyModel> Subject for Family<P> {
     fn extremes(&self) -> Materials<Self> {
         let right = core::f32::consts::FRAC_PI_2;
         let off = HairDesc {
-            alpha_r: right,
-            alpha_tt: -right,
-            alpha_trt: right,
+            alpha: [right, -right, right],
             phi_g: core::f32::consts::PI,
             ..widths(0.01)
         };
         let bright = HairDesc {
-            intensity_r: [f32::MAX, 0.0, 1e-38],
-            intensity_tt: [0.0; 3],
-            intensity_trt: [1e30, 1e-30, 1.0],
+            i_r: [f32::MAX, 0.0, 1e-38],
+            i_tt: [0.0; 3],
+            i_trt: [1e30, 1e-30, 1.0],
             ..widths(0.2)
         };
         vec![

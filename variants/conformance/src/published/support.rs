@@ -9,7 +9,7 @@ use glam::Vec3;
 use hairis::params::{HairDesc, MAX_WIDTH, MIN_WIDTH};
 use hairis::simd::f32x8;
 use hairis::{HairParams, Vec3x8};
-use hairis_reference::{HairFormulas, Parameters, Reference};
+use hairis_reference::{HairFormulas, Reference};
 
 pub const DEG: f64 = PI / 180.0;
 
@@ -29,7 +29,7 @@ impl Draws {
 
     /// A direction where something happens: anywhere, beside the peaks of the lobes, the seam, the plane of `wo`, the
     /// glints, or close to the axis.
-    pub fn near_lobes(&mut self, p: &Parameters<f64>, theta_o: f64, phi_o: f64) -> Vec3 {
+    pub fn near_lobes(&mut self, p: &HairDesc<f64>, theta_o: f64, phi_o: f64) -> Vec3 {
         let lobe = self.below(3);
         let theta = match self.below(4) {
             0 => self.between(-FRAC_PI_2, FRAC_PI_2),
@@ -55,8 +55,7 @@ impl Draws {
             1 => MAX_WIDTH,
             _ => narrow(self.scale(1.001e-4, 3.1)),
         };
-        let (beta_r, beta_tt, beta_trt, gamma_tt, gamma_g) =
-            (width(), width(), width(), width(), width());
+        let (beta, gamma_tt, gamma_g) = ([width(), width(), width()], width(), width());
         let right = core::f32::consts::FRAC_PI_2;
         let mut shift = || match self.below(8) {
             0 => right,
@@ -64,7 +63,7 @@ impl Draws {
             2 => 0.0,
             _ => narrow(self.between(-1.57, 1.57)),
         };
-        let (alpha_r, alpha_tt, alpha_trt) = (shift(), shift(), shift());
+        let alpha = [shift(), shift(), shift()];
         let phi_g = match self.below(6) {
             0 => 0.0,
             1 => core::f32::consts::PI,
@@ -77,22 +76,18 @@ impl Draws {
             _ => narrow(self.scale(dimmest, brightest)),
         };
         let mut rgb = || [intensity(), intensity(), intensity()];
-        let (intensity_r, intensity_tt, intensity_trt) = (rgb(), rgb(), rgb());
-        let intensity_g = intensity();
+        let (i_r, i_tt, i_trt) = (rgb(), rgb(), rgb());
+        let i_g = intensity();
         HairParams::new(&HairDesc {
-            alpha_r,
-            alpha_tt,
-            alpha_trt,
-            beta_r,
-            beta_tt,
-            beta_trt,
+            alpha,
+            beta,
             gamma_tt,
             gamma_g,
             phi_g,
-            intensity_r,
-            intensity_tt,
-            intensity_trt,
-            intensity_g,
+            i_r,
+            i_tt,
+            i_trt,
+            i_g,
         })
         .unwrap()
     }
@@ -117,12 +112,12 @@ pub fn angles(wo: Vec3, wi: Vec3) -> [f64; 2] {
 }
 
 /// The parameters the reference needs for the kernels' widths: rounded where they round.
-pub fn parameters(params: &HairParams, factor: f32) -> Parameters<f64> {
-    let p = Parameters::<f64>::from(params);
+pub fn parameters(params: &HairParams, factor: f32) -> HairDesc<f64> {
+    let p = params.desc().map(f64::from);
     let d = params.desc();
     let by = |width: f32| f64::from((width * factor).max(5e-5));
-    Parameters {
-        beta: [by(d.beta_r), by(d.beta_tt), by(d.beta_trt)],
+    HairDesc {
+        beta: d.beta.map(by),
         gamma_tt: by(d.gamma_tt),
         gamma_g: by(d.gamma_g),
         ..p
@@ -190,19 +185,14 @@ pub enum Kind {
 pub fn materials(kind: Kind) -> Vec<HairParams> {
     let uniform = |deg: f64| {
         let width = narrow(deg * DEG);
-        let (beta_r, beta_tt, beta_trt) = (width, width, width);
         let widths = HairDesc {
-            beta_r,
-            beta_tt,
-            beta_trt,
+            beta: [width; 3],
             gamma_tt: width,
             gamma_g: width,
-            ..HairDesc::default()
+            ..*HairParams::bright().desc()
         };
         let tilted = HairDesc {
-            alpha_r: 0.2,
-            alpha_tt: -0.15,
-            alpha_trt: -0.35,
+            alpha: [0.2, -0.15, -0.35],
             phi_g: 0.7,
             ..widths
         };
@@ -236,24 +226,16 @@ pub fn materials(kind: Kind) -> Vec<HairParams> {
 }
 
 /// A point of the grid of the efficiency figures, in degrees.
-pub fn grid_point(
-    beta_r: f64,
-    gamma_tt: f64,
-    gamma_g: f64,
-    phi_g: f64,
-    intensity_g: f32,
-) -> HairParams {
-    let [beta_r, beta_tt, beta_trt] = [1.0, 0.5, 2.0].map(|k| narrow(k * beta_r * DEG));
+pub fn grid_point(beta_r: f64, gamma_tt: f64, gamma_g: f64, phi_g: f64, i_g: f32) -> HairParams {
+    let beta = [1.0, 0.5, 2.0].map(|k| narrow(k * beta_r * DEG));
     let [gamma_tt, gamma_g, phi_g] = [gamma_tt, gamma_g, phi_g].map(|x| narrow(x * DEG));
     let desc = HairDesc {
-        beta_r,
-        beta_tt,
-        beta_trt,
+        beta,
         gamma_tt,
         gamma_g,
         phi_g,
-        intensity_g,
-        ..HairDesc::default()
+        i_g,
+        ..*HairParams::bright().desc()
     };
     HairParams::new(&desc).unwrap()
 }
@@ -299,7 +281,7 @@ pub(super) fn for_each_point(
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
     pub params: HairParams,
-    pub p: Parameters<f64>,
+    pub p: HairDesc<f64>,
     pub wo: Vec3,
     pub theta_o: f64,
     pub phi_o: f64,

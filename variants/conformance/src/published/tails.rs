@@ -90,16 +90,12 @@ fn errors(
 
 /// Every width a degree or a little more.
 fn degrees() -> Vec<HairDesc> {
-    let of = |width: f32| {
-        let (beta_r, beta_tt, beta_trt) = (width, width, width);
-        HairDesc {
-            beta_r,
-            beta_tt,
-            beta_trt,
-            gamma_tt: width,
-            gamma_g: width,
-            ..HairDesc::default()
-        }
+    let default = *HairParams::bright().desc();
+    let of = |width: f32| HairDesc {
+        beta: [width; 3],
+        gamma_tt: width,
+        gamma_g: width,
+        ..default
     };
     let mut all = Vec::new();
     for base in [
@@ -107,16 +103,14 @@ fn degrees() -> Vec<HairDesc> {
         of(0.019_24),
         of(0.05),
         HairDesc {
-            beta_r: 0.019_24,
-            ..HairDesc::default()
+            beta: [0.019_24, default.beta[1], default.beta[2]],
+            ..default
         },
     ] {
         all.extend([
             base,
             HairDesc {
-                alpha_r: 0.2,
-                alpha_tt: -0.15,
-                alpha_trt: -0.35,
+                alpha: [0.2, -0.15, -0.35],
                 phi_g: 0.7,
                 ..base
             },
@@ -148,9 +142,7 @@ pub fn samples_of_lobes_off_the_sphere_report_their_own_direction(tested: &Teste
         .into_iter()
         .flat_map(|base| {
             [0.1, 0.15, 0.2].map(|by| HairDesc {
-                alpha_r: by,
-                alpha_tt: by,
-                alpha_trt: by,
+                alpha: [by; 3],
                 ..base
             })
         })

@@ -123,8 +123,8 @@ fn unit(density: &mut [Vec<f64>; 4], weights: &[f64]) {
 fn v(long: &Line, round: &Line, params: &HairParams, shares: PerLobe<f64>) -> f64 {
     let d = params.desc();
     let mean = |rgb: [f32; 3]| rgb.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
-    let trt = mean(d.intensity_trt);
-    let intensity = [mean(d.intensity_r), mean(d.intensity_tt), trt, trt];
+    let trt = mean(d.i_trt);
+    let intensity = [mean(d.i_r), mean(d.i_tt), trt, trt];
     let (mut first, mut second) = (0.0, 0.0);
     for (i, w_i) in long.weights.iter().enumerate() {
         let f: [f64; 4] = core::array::from_fn(|l| intensity[l] * long.value[l][i]);
@@ -144,7 +144,7 @@ fn v(long: &Line, round: &Line, params: &HairParams, shares: PerLobe<f64>) -> f6
 
 /// The inclinations where the density of a sampler of so many bands jumps: the same for all hair.
 fn jumps(tested: &Tested, bands: usize) -> Vec<f64> {
-    reference(tested, Some(bands), &HairParams::default(), [0.0, 1.0, 0.0]).jumps()
+    reference(tested, Some(bands), &HairParams::bright(), [0.0, 1.0, 0.0]).jumps()
 }
 
 /// V at every point of the grid.

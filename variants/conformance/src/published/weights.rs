@@ -52,14 +52,9 @@ fn bounds(tested: &Tested, params: &HairParams, factor: f32, wo: Vec3, mask: Lob
         8.0 * inclination(0) * k,
         2.0 * inclination(1) * tt * k * k,
         8.0 * inclination(2) * k,
-        4.0 * inclination(2) * glint * k * k * p.intensity_g,
+        4.0 * inclination(2) * glint * k * k * p.i_g,
     ];
-    let color = [
-        p.intensity_r,
-        p.intensity_tt,
-        p.intensity_trt,
-        p.intensity_trt,
-    ];
+    let color = [p.i_r, p.i_tt, p.i_trt, p.i_trt];
     core::array::from_fn(|c| {
         let of = |l: Lobe| {
             let i = l.index();
@@ -115,11 +110,8 @@ fn material(draws: &mut Draws) -> HairParams {
     let any = draws.params(1e3);
     let d = *any.desc();
     let wide = |x: f32| x.max(2e-2);
-    let (beta_r, beta_tt, beta_trt) = (wide(d.beta_r), wide(d.beta_tt), wide(d.beta_trt));
     let widths = HairDesc {
-        beta_r,
-        beta_tt,
-        beta_trt,
+        beta: d.beta.map(wide),
         gamma_tt: wide(d.gamma_tt),
         gamma_g: wide(d.gamma_g),
         ..d
@@ -142,7 +134,7 @@ pub fn weights_are_below_their_bound(tested: &Tested) {
             };
             let bsdf = material.prepare(wo).with_lobes(mask);
             let limit = bounds(tested, &params, factor, wo, mask);
-            let no_glints = !mask.contains(Lobe::GLINT) || params.desc().intensity_g == 0.0;
+            let no_glints = !mask.contains(Lobe::GLINT) || params.desc().i_g == 0.0;
             for _ in 0..16 {
                 let xi = core::array::from_fn(|_| draws.xi3());
                 for level in Level::available() {
@@ -169,7 +161,7 @@ pub fn the_bound_is_reached(tested: &Tested) {
     // A lobe alone, at one width from its centres: the bound is the least one.
     let mut draws = Draws(22);
     for (model, factor) in tested.forms() {
-        let params = HairParams::default();
+        let params = HairParams::bright();
         let material: Material<'_> = Material::new(model, &params);
         for lobe in Lobe::ALL {
             let (mask, wo) = (LobeMask::of(&[lobe]), direction(0.3, 0.0));
@@ -191,14 +183,14 @@ pub fn the_bound_is_reached(tested: &Tested) {
 }
 
 /// Wide glints whose tails reach the seam.
-fn bright_glints(intensity_r: [f32; 3]) -> HairParams {
+fn bright_glints(i_r: [f32; 3]) -> HairParams {
     let desc = HairDesc {
-        intensity_r,
-        intensity_tt: [0.0; 3],
-        intensity_g: 5.0,
+        i_r,
+        i_tt: [0.0; 3],
+        i_g: 5.0,
         phi_g: 1.0,
         gamma_g: 1.0,
-        ..HairDesc::default()
+        ..*HairParams::bright().desc()
     };
     HairParams::new(&desc).unwrap()
 }

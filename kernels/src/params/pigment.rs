@@ -1,0 +1,96 @@
+//! Colours of pigment: the share of the light that passes a fibre.
+
+use super::{ArtistControls, Rule};
+use crate::ParamError;
+
+/// Mean length of a passage through the fibre, in radii: `2 mean(cos gamma_t)` over offsets `h` across it, with
+/// `sin gamma_t = h / eta` and an index of refraction of 1.55 at normal incidence, `sqrt(1 - 1/eta^2) + eta asin(1 / eta)`.
+const PASSAGE: f32 = 1.850_958;
+
+/// Absorption per fibre radius, linear RGB, of these concentrations of melanin.
+///
+/// `sigma_a = eumelanin (.419 .697 1.37) + pheomelanin (.187 .4 1.05)`
+///
+/// - Source: d'Eon et al. 2011. Blond hair has .3 and 0, brown 1.3 and 0, black 8 and 0, red .25 and 1.1.
+#[inline]
+#[must_use]
+pub const fn melanin_absorption([eumelanin, pheomelanin]: [f32; 2]) -> [f32; 3] {
+    let (e, f) = (eumelanin, pheomelanin);
+    [
+        0.419 * e + 0.187 * f,
+        0.697 * e + 0.4 * f,
+        1.37 * e + 1.05 * f,
+    ]
+}
+
+/// Concentrations of eumelanin and pheomelanin of an artist's melanin: how dark, and how red.
+///
+/// `q = -ln max(1 - amount, 1e-4)`, eumelanin `q (1 - redness)`, pheomelanin `q redness`
+///
+/// - Source: `deon_hair_absorption_from_melanin` of the `MaterialX` standard library.
+///
+/// # Errors
+///
+/// If `amount` or `redness` is outside `[0, 1]`.
+#[inline]
+pub fn melanin_concentrations(amount: f32, redness: f32) -> Result<[f32; 2], ParamError> {
+    Rule::Range([0.0, 1.0]).check("melanin_amount", &[amount, redness])?;
+    let quantity = -libm::logf((1.0 - amount).max(1e-4));
+    Ok([quantity * (1.0 - redness), quantity * redness])
+}
+
+/// The share of the light that passes a fibre of this absorption per radius once: `exp(-1.851 sigma_a)`.
+///
+/// - Derivation: Beer's law over the mean length of a passage, `sqrt(1 - 1/eta^2) + eta asin(1 / eta)` radii for an index of refraction
+///   eta of 1.55 at normal incidence.
+/// - Range: `[0, 1]`, decreasing in `sigma_a`.
+///
+/// # Errors
+///
+/// If a channel is negative or not finite.
+///
+/// ```
+/// use hairis::params::{melanin_absorption, transmittance};
+/// let [r, g, b] = transmittance(melanin_absorption([0.65, 0.0]))?;
+/// assert!(r > g && g > b && r < 0.61); // brown
+/// # Ok::<(), hairis::ParamError>(())
+/// ```
+#[inline]
+pub fn transmittance(sigma_a: [f32; 3]) -> Result<[f32; 3], ParamError> {
+    Rule::NotNegative.check("sigma_a", &sigma_a)?;
+    Ok(sigma_a.map(|sigma| libm::expf(-PASSAGE * sigma)))
+}
+
+impl ArtistControls {
+    /// The same hair with the colours of this absorption per fibre radius, of pigment or dye: that of the transmission is
+    /// [`transmittance`], that of the secondary highlight, whose light passes twice, its square. Intensities stay.
+    ///
+    /// # Errors
+    ///
+    /// If a channel is negative or not finite.
+    #[inline]
+    pub fn with_absorption(mut self, sigma_a: [f32; 3]) -> Result<Self, ParamError> {
+        let color = transmittance(sigma_a)?;
+        self.transmission.color = color;
+        self.secondary.color = color.map(|c| c * c);
+        Ok(self)
+    }
+
+    /// The same hair with the colours of an artist's melanin: see [`melanin_concentrations`].
+    ///
+    /// # Errors
+    ///
+    /// If `amount` or `redness` is outside `[0, 1]`.
+    ///
+    /// ```
+    /// use hairis::HairParams;
+    /// use hairis::params::ArtistControls;
+    /// let auburn = HairParams::from_artist(&ArtistControls::default().with_melanin(0.6, 0.7)?)?;
+    /// assert!(auburn.desc().i_trt[0] > 2.0 * auburn.desc().i_trt[1]);
+    /// # Ok::<(), hairis::ParamError>(())
+    /// ```
+    #[inline]
+    pub fn with_melanin(self, amount: f32, redness: f32) -> Result<Self, ParamError> {
+        self.with_absorption(melanin_absorption(melanin_concentrations(amount, redness)?))
+    }
+}
