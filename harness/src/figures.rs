@@ -151,7 +151,7 @@ mod tests {
     use hairis_variants::Cauchy;
 
     fn default_hair() -> HairParams {
-        HairParams::new(&*HairParams::bright().desc()).expect("the default is legal")
+        HairParams::new(HairParams::bright().desc()).expect("the default is legal")
     }
 
     fn halton(n: u32) -> Vec<[f32; 3]> {

@@ -37,7 +37,7 @@ fn assert_rgb(field: &str, build: impl Fn([f32; 3]) -> Result<(), ParamError>) {
     for value in FORBIDDEN.into_iter().chain([-f32::MIN_POSITIVE]) {
         match build([1.0, value, -1.0]) {
             Err(error) => {
-                assert_eq!((error.field(), error.number()), (field, Some(1)));
+                assert_eq!((error.field(), error.number()), (field, Some(1)), "{value}");
                 assert_eq!(error.value().to_bits(), value.to_bits(), "{field}");
             }
             other => panic!("{field} {value}: {other:?}"),

@@ -3,12 +3,13 @@
 use super::FoundCells;
 use super::bounded::{Bounded, Spread, integrals, largest};
 use super::claim::{Claim, Figure, Origin, Side, Statement};
-use super::hair::{Hair, whole_glint};
+use super::hair::Hair;
 use crate::study::Grid;
 use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::params::HairDesc;
 use hairis::{HairParams, ParamError};
+use hairis_reference::errata;
 
 const DENSITY: Statement = Statement {
     id: "misprint-glint-density",
@@ -56,15 +57,9 @@ fn glints(tt: bool) -> Result<Vec<HairParams>, ParamError> {
 
 /// Total of the printed density, less 1.
 fn excess(params: &HairParams) -> Bounded {
-    let glint = whole_glint(&params.desc().map(f64::from));
-    let printed = |phi: f64| [glint.pdf(phi) / glint.cdf(FRAC_PI_2)];
-    let d = params.desc();
-    let [total] = integrals(
-        printed,
-        &[0.0, FRAC_PI_2, PI],
-        f64::from(d.phi_g),
-        f64::from(d.gamma_g),
-    );
+    let HairDesc { phi_g, gamma_g, .. } = params.desc().map(f64::from);
+    let printed = |phi: f64| [2.0 * errata::glint(phi_g, gamma_g, phi)];
+    let [total] = integrals(printed, &[0.0, FRAC_PI_2, PI], phi_g, gamma_g);
     total.plus(-1.0)
 }
 

@@ -9,7 +9,7 @@ use hairis::params::HairDesc;
 use hairis::{HairParams, Lobe, PerLobe};
 use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::quadrature::{Tolerance, bell_breakpoints, integrate_rectangle};
-use hairis_reference::{CauchyDensity, HairReference, Reference};
+use hairis_reference::{CauchyDensity, HairReference, Reference, errata};
 
 /// The interval of `theta_h` as `theta_i` runs over all inclinations, rad.
 pub(super) fn theta_h_interval(theta_o: f64) -> [f64; 2] {
@@ -42,7 +42,7 @@ impl Longitudinal {
             beta,
             theta_o,
         } = *self;
-        let printed = CauchyDensity::new(alpha, beta, theta_o - FRAC_PI_2, theta_o + FRAC_PI_2);
+        let printed = errata::longitudinal(alpha, beta, theta_o);
         let [lo, hi] = theta_h_interval(theta_o);
         printed.cdf(hi) - printed.cdf(lo)
     }
@@ -66,7 +66,7 @@ pub(super) fn longitudinal_grid() -> Vec<Longitudinal> {
 }
 
 /// A glint's density of `|phi|` on [0, pi]; as printed, without an end, it is this over its cdf at a right angle.
-pub(super) fn whole_glint(p: &HairDesc<f64>) -> CauchyDensity<f64> {
+fn whole_glint(p: &HairDesc<f64>) -> CauchyDensity<f64> {
     CauchyDensity::new(p.phi_g, p.gamma_g, 0.0, PI)
 }
 

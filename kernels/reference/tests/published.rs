@@ -365,7 +365,7 @@ fn the_axis_is_discarded() {
 fn f32_is_close_to_f64() {
     // Relative, further than 0.02 rad from the axis, widths of the default set. Measured: 6.2e-6 and 5.4e-6.
     let (mut worst_value, mut worst_pdf) = (0.0_f64, 0.0_f64);
-    let params = HairParams::new(&*HairParams::bright().desc()).unwrap();
+    let params = HairParams::new(HairParams::bright().desc()).unwrap();
     for [a, b, c] in points(20_000) {
         let single = |v: [f64; 3]| v.map(f32::from_f64);
         let (wo, wi) = (

@@ -5,31 +5,23 @@ use crate::quadrature::{integrate, panels};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
 use hairis::params::HairDesc;
-use hairis_reference::{HairReference, Reference, Shape};
+use hairis_reference::{CauchyDensity, HairReference, Reference, Shape, errata};
 
-/// A, B of section 3.2.1 as printed, without the half.
-fn printed_bounds(alpha: f64, beta: f64, theta_o: f64) -> (f64, f64) {
-    (
-        ((FRAC_PI_2 + theta_o - alpha) / beta).atan(),
-        ((-FRAC_PI_2 + theta_o - alpha) / beta).atan(),
-    )
+/// The density of the longitudinal term in `theta_h`, on the interval that it has.
+fn mended(alpha: f64, beta: f64, theta_o: f64) -> CauchyDensity<f64> {
+    let [lo, hi] = [-FRAC_PI_2, FRAC_PI_2].map(|end| 0.5 * (end + theta_o));
+    CauchyDensity::new(alpha, beta, lo, hi)
 }
 
-fn mended_bounds(alpha: f64, beta: f64, theta_o: f64) -> (f64, f64) {
-    let bound = |end: f64| (((end + theta_o) / 2.0 - alpha) / beta).atan();
-    (bound(FRAC_PI_2), bound(-FRAC_PI_2))
-}
-
-/// Integral over the inclinations there are of the longitudinal density with the given A and B.
-fn longitudinal_mass(alpha: f64, beta: f64, theta_o: f64, (a, b): (f64, f64)) -> f64 {
+/// Integral over the inclinations there are of such a density.
+fn longitudinal_mass(alpha: f64, beta: f64, theta_o: f64, density: &CauchyDensity<f64>) -> f64 {
     let ends = panels(
         -FRAC_PI_2,
         FRAC_PI_2,
         &[(2.0 * alpha - theta_o, 2.0 * beta)],
     );
     integrate(&ends, |theta_i| {
-        let from_peak = (theta_i + theta_o) / 2.0 - alpha;
-        beta / (2.0 * (a - b) * (from_peak * from_peak + beta * beta))
+        0.5 * density.pdf(0.5 * (theta_i + theta_o))
     })
 }
 
@@ -50,12 +42,13 @@ fn longitudinal_grid() -> impl Iterator<Item = (f64, f64, f64)> {
 fn e1_longitudinal_bounds_need_the_half() {
     let (mut least, mut most) = (1.0_f64, 0.0_f64);
     for (alpha, beta, theta_o) in longitudinal_grid() {
-        let mended = longitudinal_mass(alpha, beta, theta_o, mended_bounds(alpha, beta, theta_o));
+        let mass = |density| longitudinal_mass(alpha, beta, theta_o, &density);
+        let mended = mass(mended(alpha, beta, theta_o));
         assert!(
             (mended - 1.0).abs() < 1e-10,
             "mended: {mended} at {alpha} {beta} {theta_o}"
         );
-        let printed = longitudinal_mass(alpha, beta, theta_o, printed_bounds(alpha, beta, theta_o));
+        let printed = mass(errata::longitudinal(alpha, beta, theta_o));
         assert!(
             printed < 0.999,
             "printed: {printed} at {alpha} {beta} {theta_o}"
@@ -63,7 +56,7 @@ fn e1_longitudinal_bounds_need_the_half() {
         (least, most) = (least.min(printed), most.max(printed));
     }
     println!("E1: mass of the printed bounds {least:.4} to {most:.4}");
-    let printed = longitudinal_mass(-0.1, 0.15, 0.4, printed_bounds(-0.1, 0.15, 0.4));
+    let printed = longitudinal_mass(-0.1, 0.15, 0.4, &errata::longitudinal(-0.1, 0.15, 0.4));
     assert!(
         (printed - 0.923).abs() < 5e-4,
         "the example of ERRATA E1: {printed}"
@@ -73,35 +66,27 @@ fn e1_longitudinal_bounds_need_the_half() {
 #[test]
 fn e1_printed_samples_leave_the_sphere() {
     let (alpha, beta, theta_o) = (-7.5 * DEG, 7.5 * DEG, 30.0 * DEG);
-    let sample =
-        |(a, b): (f64, f64), xi: f64| 2.0 * beta * (xi * (a - b) + b).tan() + 2.0 * alpha - theta_o;
-    let inside = |bounds| {
-        let drawn = (0..1000).map(|n| sample(bounds, (f64::from(n) + 0.5) / 1000.0));
+    let [mended, printed] = [mended, errata::longitudinal].map(|of| of(alpha, beta, theta_o));
+    let sample = |density: &CauchyDensity<f64>, xi: f64| 2.0 * density.sample(xi) - theta_o;
+    let inside = |density| {
+        let drawn = (0..1000).map(|n| sample(density, (f64::from(n) + 0.5) / 1000.0));
         drawn.filter(|theta_i| theta_i.abs() <= FRAC_PI_2).count()
     };
     assert_eq!(
-        inside(mended_bounds(alpha, beta, theta_o)),
+        inside(&mended),
         1000,
         "every mended sample is an inclination"
     );
-    assert!(
-        inside(printed_bounds(alpha, beta, theta_o)) < 960,
-        "printed samples are not"
-    );
-    // The printed cdf, atan((theta_i + theta_o - alpha) / beta) - B over A - B, does not invert the printed sampler.
-    let (a, b) = printed_bounds(alpha, beta, theta_o);
-    let printed_cdf = |theta_i: f64| (((theta_i + theta_o - alpha) / beta).atan() - b) / (a - b);
-    assert!(
-        (printed_cdf(sample((a, b), 0.3)) - 0.3).abs() > 0.05,
-        "the printed cdf is another one"
-    );
+    assert!(inside(&printed) < 960, "printed samples are not");
+    let again = errata::longitudinal_cdf(alpha, beta, theta_o, sample(&printed, 0.3));
+    assert!((again - 0.3).abs() > 0.05, "the printed cdf is another one");
     let p = HairDesc {
         alpha: [alpha; 3],
         beta: [beta; 3],
         ..default_set()
     };
     let hair = HairReference::prepare(&p, Shape::Gaussian, direction(theta_o, 0.0));
-    let mended = sample(mended_bounds(alpha, beta, theta_o), 0.3);
+    let mended = sample(&mended, 0.3);
     assert!(
         (hair.sample_theta(Lobe::R, 0.3) - mended).abs() < 1e-14,
         "the reference draws the mended sample"
@@ -143,7 +128,7 @@ fn e2_row_r_of_table_2_has_the_width_of_r() {
 
 #[test]
 fn e2_the_cauchy_antiderivative_needs_a_half() {
-    let printed = |x: f64| (x / 0.2).atan() / PI;
+    let printed = |x: f64| errata::cauchy_antiderivative(0.2, x);
     let mended = |x: f64| printed(x) + 0.5;
     let is_cdf =
         |cdf: &dyn Fn(f64) -> f64| cdf(-1e12).abs() < 1e-9 && (cdf(1e12) - 1.0).abs() < 1e-9;
@@ -155,14 +140,10 @@ fn e2_the_cauchy_antiderivative_needs_a_half() {
 fn e3_the_glint_has_no_density_beyond_a_right_angle() {
     let mass = |p: &HairDesc<f64>, printed: bool| {
         let hair = HairReference::prepare(p, Shape::Gaussian, [0.0, 1.0, 0.0]);
-        let [c, d] = [FRAC_PI_2, 0.0].map(|end| ((end - p.phi_g) / p.gamma_g).atan());
         let ends = panels(0.0, PI, &[(p.phi_g, p.gamma_g), (FRAC_PI_2, PI)]);
         2.0 * integrate(&ends, |phi| {
-            let from_peak = phi - p.phi_g;
-            let as_printed =
-                p.gamma_g / (2.0 * (c - d) * (from_peak * from_peak + p.gamma_g * p.gamma_g));
             if printed {
-                as_printed
+                errata::glint(p.phi_g, p.gamma_g, phi)
             } else {
                 hair.pdf_phi(Lobe::GLINT, phi)
             }

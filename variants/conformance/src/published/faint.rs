@@ -29,7 +29,7 @@ pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one(tested: &Tested) {
     let mut draws = Draws(61);
     let only = LobeMask::of(&[Lobe::TT]);
     for wo in [Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.96, 0.0, 0.28)] {
-        let usual = bsdf(tested, &*HairParams::bright().desc(), wo).with_lobes(only);
+        let usual = bsdf(tested, HairParams::bright().desc(), wo).with_lobes(only);
         for intensity in [1e-10, 1e-30, 1e-37, 1e-39, 1e-42, 1e-45] {
             let desc = HairDesc {
                 i_tt: [intensity; 3],
