@@ -259,32 +259,21 @@ fn replaced(
     Ok((values, exact))
 }
 
-/// A refusal with the text of [`ParamError`], and the field's name and value as they are in the
+/// A refusal by the rule of [`ParamError`], with the field's name and value as they are in the
 /// input.
 fn refused(path: &str, fields: &[Field], error: &ParamError, exact: &Values<f64>) -> String {
-    let text = error.to_string();
-    let rule = text
-        .split_once(" must ")
-        .and_then(|(_, rest)| rest.rsplit_once(", got "));
-    let (Some((field, number)), Some((rule, value))) = (Field::refused(fields, error), rule) else {
-        return refusal("params", text);
+    let Some((field, number)) = Field::refused(fields, error) else {
+        return refusal("params", error.to_string());
     };
-    let is_list = field.kind.width() > 1;
-    let item = number
-        .filter(|_| is_list)
-        .map_or_else(String::new, |number| format!("[{number}]"));
-    let numbers = exact.numbers(field.name);
-    let problem = match if is_list {
-        number.and_then(|number| numbers.get(number))
-    } else {
-        numbers.first()
-    } {
+    let item = number.map_or_else(String::new, |number| format!("[{number}]"));
+    let value = exact.numbers(field.name).get(number.unwrap_or(0)).copied();
+    let problem = match value {
         // Finite in the input, but too large for single precision.
-        Some(value) if single(*value).is_infinite() => {
+        Some(value) if single(value).is_infinite() => {
             format!("too large for single precision, got {value:e}")
         }
-        Some(value) => format!("must {rule}, got {value}"),
-        None => format!("must {rule}, got {value}"),
+        Some(value) => format!("must be {}, got {value}", error.rule()),
+        None => format!("must be {}, got {}", error.rule(), error.value()),
     };
     refusal(&(join(path, field.name) + &item), problem)
 }
