@@ -373,7 +373,7 @@ fn f32_is_close_to_f64() {
             single(direction((b - 0.5) * 3.1, 6.2 * c)),
         );
         let (wo_f64, wi_f64) = (wo.map(f64::from), wi.map(f64::from));
-        let narrow = HairReference::prepare(&*params.desc(), Shape::Cauchy, wo);
+        let narrow = HairReference::prepare(params.desc(), Shape::Cauchy, wo);
         let wide = HairReference::prepare(&params.desc().map(f64::from), Shape::Cauchy, wo_f64);
         for (x, y) in narrow.eval(wi).into_iter().zip(wide.eval(wi_f64)) {
             worst_value = worst_value.max((f64::from(x) / y - 1.0).abs());
@@ -395,7 +395,7 @@ fn f32_is_close_to_f64() {
         let params = HairParams::new(&desc).unwrap();
         for theta_o in THETA_O {
             let wo = direction(theta_o * DEG, 0.3).map(f32::from_f64);
-            let error = worst_inversion(&*params.desc(), wo);
+            let error = worst_inversion(params.desc(), wo);
             assert!(
                 error < bound,
                 "width {width} theta_o {theta_o}: cdf of the drawn angle off by {error:e}"

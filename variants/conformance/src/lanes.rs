@@ -28,7 +28,7 @@ impl<'a> Mixed<'a> {
             let any = draws.direction();
             let drawn = material[lane].prepare(hits[lane]).sample(draws.xi3());
             if lane % 2 == 0 {
-                drawn.map_or(any, |s| s.wi.into())
+                drawn.map_or(any, |s| s.wi)
             } else {
                 any
             }

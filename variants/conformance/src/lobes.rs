@@ -27,7 +27,7 @@ pub fn lobes_sum_to_value(subject: &dyn ErasedSubject) -> Outcome {
             let hit = draws.hit();
             let bsdf = material.prepare(hit);
             let any = draws.direction();
-            let drawn = bsdf.sample(draws.xi3()).map_or(any, |s| s.wi.into());
+            let drawn = bsdf.sample(draws.xi3()).map_or(any, |s| s.wi);
             let wi = if round % 3 == 0 { any } else { drawn };
             let (whole, lobes) = (bsdf.eval_pdf(wi), bsdf.lobes(wi));
             let at = || format!("{name} {hit:?} {wi:?} {lobes:?}, whole {whole:?}");

@@ -95,9 +95,9 @@ pub(crate) fn sample_is_near(
 ) -> bool {
     let near = |want: Option<Sample>, by: f64| match (got, want) {
         (None, None) => true,
-        (Some(a), Some(b)) => a.lobe == b.lobe && distance(a.wi.into(), b.wi.into()) <= by,
+        (Some(a), Some(b)) => a.lobe == b.lobe && distance(a.wi, b.wi) <= by,
         // Next to the axis either may be discarded.
-        (Some(s), None) | (None, Some(s)) => cos_theta(s.wi.into()) < 1e-4,
+        (Some(s), None) | (None, Some(s)) => cos_theta(s.wi) < 1e-4,
     };
     if near(want, direction) {
         return true;
@@ -116,7 +116,7 @@ pub(crate) fn sample_is_near(
         let of_lobe = |b: &Sample| b.lobe == a.lobe;
         want.filter(of_lobe)
             .or_else(|| moved.iter().flatten().copied().find(of_lobe))
-            .map(|b| distance(a.wi.into(), b.wi.into()))
+            .map(|b| distance(a.wi, b.wi))
     });
     let reach = reach.fold(direction, f64::max);
     moved.push(want);

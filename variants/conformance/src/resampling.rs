@@ -43,7 +43,7 @@ impl Light {
             (0.98, [20.0, 0.0, 60.0], [0.0; 3], 1.0),
         ]
         .map(|(edge, cap, around, share)| Self {
-            axis: Vec3::from(draws.direction()),
+            axis: draws.direction(),
             edge,
             cap,
             around,
@@ -175,7 +175,7 @@ fn reservoirs(bsdf: &dyn ErasedBsdf8, light: Light, level: Level, draws: &mut Dr
         let wi = if i < 4 {
             bsdf.propose8(&triples(&core::array::from_fn(|_| draws.xi3())))
         } else {
-            packet(&core::array::from_fn(|_| light.draw(draws).into()))
+            packet(&core::array::from_fn(|_| light.draw(draws)))
         };
         let found: [([f32; 3], f32); 8] = core::array::from_fn(|lane| light.look_up(wi.lane(lane)));
         let (radiance, pdf) = (

@@ -40,7 +40,7 @@ pub fn samples_agree_with_eval(subject: &dyn ErasedSubject) -> Outcome {
                 for (sample, lane, level) in packets.chain(scalar) {
                     let Some(s) = sample else { continue };
                     live += 1;
-                    let wi = s.wi.into();
+                    let wi = s.wi;
                     let cos = cos_theta(wi);
                     let at = || format!("{s:?} {name} {hit:?} xi {:?} {level}", xi[lane]);
                     for (value, weight) in s.value.into_iter().zip(s.weight) {
