@@ -1,7 +1,7 @@
 //! Agreement of kernels and formulas: one lane and eight lanes of every instruction set against the
 //! reference in `f64`, on random hair, in the three regions where digits are lost.
 //!
-//! - Bounds: those of the registry, [`ModelId::accuracy`], of directions further than 1e-3 rad from the axis: 1e-5 for the
+//! - Bounds: those of the registry, [`accuracy`], of directions further than 1e-3 rad from the axis: 1e-5 for the
 //!   published density, 1e-5 for a Cauchy and 1e-4 for a Gaussian value, relative. The worst of all must hold them.
 //! - Samples: density, value and weight are compared with those of the direction that was returned; the direction
 //!   through the lobe's cdf, which must return the numbers it was sampled with.
@@ -9,7 +9,7 @@
 //!   fall on either side; and within 1e-9 rad of pi, where the reference itself has no digits left.
 //! - Next to `|phi|` = pi the R and TRT-g lobes vanish as `cos(phi / 2)`, which a rounded azimuth does not determine: of the
 //!   errors beyond a bound, those that rotating `wi` by 2^-22 rad does not explain are counted apart.
-//! - Absolute errors of Gaussian values up to `2^-114` per lobe are allowed: see [`ModelId::slack`].
+//! - Absolute errors of Gaussian values up to `2^-114` per lobe are allowed: see [`slack`](hairis_reference::slack).
 
 mod measure;
 mod packet;

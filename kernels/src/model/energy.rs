@@ -61,7 +61,7 @@ impl<M: Model> Kernel for Conserve<'_, M> {
 /// use hairis::{Conserving, Gaussian, HairParams, Material, PerLobe, Published};
 /// let grazing = Vec3::new(0.99, 0.14, 0.0).normalize();
 /// let red = |PerLobe(lobes): PerLobe<[f32; 3]>| lobes.iter().map(|lobe| lobe[0]).sum::<f32>();
-/// let params = HairParams::default();
+/// let params = HairParams::bright();
 /// assert!(red(Material::new(&Published(Gaussian), &params).prepare(grazing).albedo()) > 1.5);
 /// let hair = Material::new(&Conserving(Published(Gaussian)), &params);
 /// assert!((red(hair.prepare(grazing).albedo()) - 1.0).abs() < 1e-3);
