@@ -10,7 +10,7 @@
 //! | [`KajiyaKay`](hairis_variants::KajiyaKay) | [`KajiyaKayReference`] | Kajiya & Kay 1989 |
 //! | [`Chiang`](hairis_variants::Chiang) | [`ChiangReference`] | Chiang et al. 2016 |
 //!
-//! All implement [`Reference`], and `Box<dyn Reference<f64>>` is the handle of a model chosen at run time: see [`reference`]
+//! All implement [`Reference`], and `Box<dyn Reference<f64>>` is the handle of a model chosen at run time: see [`reference()`]
 //! for the models of the registry, [`HairFormulas`] for the published model. [`Formulas`] pairs a kernel with its formulas.
 //!
 //! - Conventions: those of [`hairis`]. `wo` is the paper's `omega_r`, `wi` its `omega_i`.
