@@ -61,7 +61,8 @@ macro_rules! object {
     ($any:ident $object:ident [$($variant:ident: $model:ty;)*]) => {
         impl Deref for $any {
             type Target = dyn $object;
-            #[inline]
+            // Inlined, it would compile every model anew in each crate that calls a handle.
+            #[inline(never)]
             fn deref(&self) -> &Self::Target {
                 match self {
                     $(Self::$variant(one) => one),*
@@ -70,7 +71,7 @@ macro_rules! object {
         }
 
         impl DerefMut for $any {
-            #[inline]
+            #[inline(never)]
             fn deref_mut(&mut self) -> &mut Self::Target {
                 match self {
                     $(Self::$variant(one) => one),*
