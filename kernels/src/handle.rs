@@ -8,7 +8,7 @@ pub(crate) mod kernels;
 mod material;
 
 pub use bsdf::{Bsdf, Bsdf8};
-pub use dynamic::{DynBsdf, DynBsdf8, DynMaterial};
+pub use dynamic::{DynBsdf, DynBsdf8};
 pub use hits::{HitsError, MaterialTable};
 pub use material::{Material, Material8};
 

@@ -10,7 +10,7 @@ mod lobe_model;
 pub mod math;
 
 pub use crate::hair::{Bell, FourBells, GRAZING, MatchedBell, TwoBells};
-pub use crate::handle::{DynBsdf, DynBsdf8, DynMaterial};
+pub use crate::handle::{DynBsdf, DynBsdf8};
 pub use direction::Direction;
 pub use energy::Conserving;
 pub use lobe::{Lobe, LobeMask, PerLobe};

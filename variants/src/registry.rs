@@ -16,7 +16,7 @@ use hairis::ParamError;
 use {
     core::ops::{Deref, DerefMut},
     glam::Vec3,
-    hairis::model::{DynBsdf, DynBsdf8, DynMaterial},
+    hairis::model::{DynBsdf, DynBsdf8},
     hairis::simd::Level,
     hairis::{Bsdf, Bsdf8, Hit, Hit8, LobeMask, Material, Material8},
 };

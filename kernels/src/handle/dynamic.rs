@@ -3,50 +3,14 @@
 //! Each call is compiled once per model, and choosing it costs one jump. Scalar calls take a `Vec3`: a `Vec3x` by value
 //! would cost 8 to 15 ns.
 
-use super::{Bsdf, Bsdf8, Material};
-use crate::columns::{EvalColumns, HitColumns, LengthError, SampleColumns};
+use super::{Bsdf, Bsdf8};
+use crate::columns::{EvalColumns, LengthError, SampleColumns};
 use crate::model::{LobeEval, LobeEval8, Model};
 use crate::resample::{CandidateColumns, Counts, Partition, Weighed8, WeightColumns};
 use crate::simd::{Level, Vec3x, f32x8};
 use crate::{Eval, Eval8, LobeMask, PerLobe, Sample, Sample8, Vec3x8};
 use core::fmt::Debug;
 use glam::Vec3;
-
-/// A [`Material`] of any model. What prepares hits returns a type of the model: see `AnyMaterial` of `hairis-variants`.
-pub trait DynMaterial: Debug + Send + Sync {
-    /// See [`Material::eval_hits`].
-    ///
-    /// # Errors
-    ///
-    /// If the columns differ in length; nothing is written then.
-    fn eval_hits(
-        &self,
-        hits: HitColumns<'_>,
-        wi: [&[f32]; 3],
-        out: EvalColumns<'_>,
-    ) -> Result<(), LengthError>;
-
-    /// See [`Material::sample_hits`].
-    ///
-    /// # Errors
-    ///
-    /// If the columns differ in length; nothing is written then.
-    fn sample_hits(
-        &self,
-        hits: HitColumns<'_>,
-        xi: [&[f32]; 3],
-        out: SampleColumns<'_>,
-    ) -> Result<(), LengthError>;
-
-    /// See [`Material::max_albedo`].
-    fn max_albedo(&self) -> f32;
-
-    /// See [`Material::conserving_scale`].
-    fn conserving_scale(&self) -> f32;
-
-    /// See [`Material::with_level`].
-    fn set_level(&mut self, level: Level);
-}
 
 /// A [`Bsdf`] of any model.
 ///
@@ -192,16 +156,6 @@ macro_rules! set {
             *self = self.$with($($arg)?);
         }
     )* };
-}
-
-impl<M: Model> DynMaterial for Material<M> {
-    forward! { Material:
-        eval_hits(hits: HitColumns<'_>, wi: [&[f32]; 3], out: EvalColumns<'_>) -> Result<(), LengthError>;
-        sample_hits(hits: HitColumns<'_>, xi: [&[f32]; 3], out: SampleColumns<'_>) -> Result<(), LengthError>;
-        max_albedo() -> f32;
-        conserving_scale() -> f32;
-    }
-    set! { set_level(level: Level) = with_level; }
 }
 
 impl<M: Model> DynBsdf for Bsdf<M> {

@@ -3,8 +3,13 @@
 //! An enum per handle keeps the handle as plain data; its calls are those of the object-safe traits of `hairis::model`, to
 //! which it dereferences. Each model is compiled once, here, and the choice costs one jump.
 
-/// Calls a method of the handle of any model; after `=>`, the enum that its result goes into.
+/// Calls a method of the handle of any model; last, the enum that its result goes into.
 macro_rules! each {
+    ([$($variant:ident: $model:ty;)*] $this:expr, $one:ident => $call:expr) => {
+        match $this {
+            $(Self::$variant($one) => $call),*
+        }
+    };
     ([$($variant:ident: $model:ty;)*] $this:expr, $one:ident => $call:expr, $Out:ident) => {
         match $this {
             $(Self::$variant($one) => $Out::$variant($call)),*
@@ -110,7 +115,7 @@ pub(super) use restricted;
 macro_rules! handles {
     ($models:tt) => {
         any::handle! {
-            /// A material of any model of the list: see [`Material`]. Calls on columns are those of [`DynMaterial`].
+            /// A material of any model of the list: see [`Material`].
             ///
             /// ```
             /// use hairis::{HairParams, Material};
@@ -133,7 +138,6 @@ macro_rules! handles {
             /// Eight BSDFs of one model, one per lane: see [`Bsdf8`]. Its calls are those of [`DynBsdf8`].
             AnyBsdf8 Bsdf8 $models
         }
-        any::object! { AnyMaterial DynMaterial $models }
         any::object! { AnyBsdf DynBsdf $models }
         any::object! { AnyBsdf8 DynBsdf8 $models }
         any::restricted! { AnyBsdf AnyBsdf8 }
@@ -164,6 +168,20 @@ macro_rules! handles {
             #[inline(never)]
             fn prepare_hits(&self, hits: &Hit8) -> AnyBsdf8 {
                 any::each!($models self, material => material.prepare8(hits), AnyBsdf8)
+            }
+
+            /// The largest directional albedo: see [`Material::max_albedo`].
+            #[inline(never)]
+            #[must_use]
+            pub fn max_albedo(&self) -> f32 {
+                any::each!($models self, material => material.max_albedo())
+            }
+
+            /// The factor that keeps the directional albedo at most 1: see [`Material::conserving_scale`].
+            #[inline(never)]
+            #[must_use]
+            pub fn conserving_scale(&self) -> f32 {
+                any::each!($models self, material => material.conserving_scale())
             }
         }
 
