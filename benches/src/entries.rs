@@ -337,13 +337,8 @@ impl<M: Formulas> Of<'_, M> {
                         len,
                         &arrays(&inputs.wi),
                         move |wi, [r, g, b, pdf]: [&mut [f32]; 4]| {
-                            bsdf.eval_columns(
-                                wi,
-                                EvalColumns {
-                                    value: Some([r, g, b]),
-                                    pdf: Some(pdf),
-                                },
-                            )
+                            let (value, pdf) = (Some([r, g, b]), Some(pdf));
+                            bsdf.eval_columns(wi, EvalColumns { value, pdf })
                         },
                     )
                 });

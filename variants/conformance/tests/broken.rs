@@ -1,13 +1,16 @@
 //! A sound model of two lobes, and copies of it with one fault each: the only file of these tests that implements
 //! [`Model`].
 
+mod subject;
+
+pub(crate) use subject::Broken;
+
 use core::f32::consts::{FRAC_1_PI, PI};
 use core::ops::Deref;
 use hairis::model::math::{atan2_upper, sin_cos_half_turn};
 use hairis::model::{GRAZING, LobeEval, Model, SampleLanes};
 use hairis::simd::{Broadcast, LaneStruct, Lanes, Path, Scalar, Vec3x, lanes3, store3};
 use hairis::{Eval, Hit, Lobe, LobeMask, PerLobe};
-use hairis_conformance::{Claims, Materials, Subject};
 
 /// Faults of a model, by number. They are constants of a material: a type per fault would be compiled for each.
 pub(crate) const SOUND: u8 = 0;
@@ -472,105 +475,5 @@ impl Model for Fiber {
             [zero; 3],
             [zero; 3],
         ])
-    }
-}
-
-/// The fibre with this fault, as its author would test it.
-pub(crate) struct Broken(pub(crate) u8);
-
-impl Subject for Broken {
-    type Model = Fiber;
-
-    fn model(&self) -> Fiber {
-        Fiber
-    }
-
-    fn materials(&self) -> Materials<Self> {
-        vec![
-            (
-                "everyday",
-                Params {
-                    fault: self.0,
-                    kd: [0.4, 0.3, 0.2],
-                    ks: [0.5, 0.4, 0.6],
-                    width: 0.1,
-                },
-            ),
-            (
-                "narrow",
-                Params {
-                    fault: self.0,
-                    kd: [0.1, 0.3, 0.2],
-                    ks: [0.5, 0.9, 0.0],
-                    width: 0.01,
-                },
-            ),
-            (
-                "black",
-                Params {
-                    fault: self.0,
-                    kd: [0.0; 3],
-                    ks: [0.0; 3],
-                    width: 0.1,
-                },
-            ),
-        ]
-    }
-
-    fn extremes(&self) -> Materials<Self> {
-        vec![(
-            "cone alone",
-            Params {
-                fault: self.0,
-                kd: [0.0; 3],
-                ks: [1e30, 0.0, 1e-30],
-                width: 0.03,
-            },
-        )]
-    }
-
-    fn white(&self) -> Materials<Self> {
-        vec![(
-            "diffuse alone",
-            Params {
-                fault: self.0,
-                kd: [1.0; 3],
-                ks: [0.0; 3],
-                width: 0.1,
-            },
-        )]
-    }
-
-    fn claims(&self) -> Claims {
-        Claims {
-            reciprocal: Some(2e-6),
-            furnace: Some(1e-5),
-            albedo: 2e-3,
-            direction: 2e-5,
-            ..Claims::default()
-        }
-    }
-
-    /// Lobe by lobe the weight is `4 kd cos / (pi p)`, or `ks cos span / (pi p)`, where `span <= pi`: `p` is the lobe's share.
-    fn weight_bound(&self, params: &Params, _hit: &Hit, lobes: LobeMask) -> Option<f64> {
-        let sum = |color: [f32; 3]| color.iter().map(|x| f64::from(*x)).sum::<f64>();
-        let most = |color: [f32; 3]| f64::from(color.into_iter().fold(0.0, f32::max));
-        let lit = |lobe, color: [f32; 3]| {
-            if lobes.contains(lobe) {
-                color
-            } else {
-                [0.0; 3]
-            }
-        };
-        let (kd, ks) = (lit(DIFFUSE, params.kd), lit(CONE, params.ks));
-        let total = sum(kd) + sum(ks);
-        let ratio = |color, by: f64| {
-            if sum(color) > 0.0 {
-                by * most(color) * total / sum(color)
-            } else {
-                0.0
-            }
-        };
-        (total > 0.0).then(|| ratio(kd, 4.0 / core::f64::consts::PI).max(ratio(ks, 1.0)))
     }
 }

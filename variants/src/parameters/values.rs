@@ -1,0 +1,289 @@
+//! Values of fields: plain data, whatever the model.
+
+use super::{Field, Kind};
+use core::fmt;
+
+/// Refusal of [`Values::set`] and [`Values::set_word`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FieldError {
+    /// There is no field of this name.
+    Name,
+    /// The field has this many numbers.
+    Count(usize),
+    /// The field has these words.
+    Word(&'static [&'static str]),
+}
+
+impl fmt::Display for FieldError {
+    #[inline]
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Name => f.write_str("the model has no such field"),
+            Self::Count(count) => write!(f, "the field must have {count} numbers"),
+            Self::Word([]) => f.write_str("the field has numbers and no words"),
+            Self::Word(words) => write!(f, "the field must be one of {words:?}"),
+        }
+    }
+}
+
+impl core::error::Error for FieldError {}
+
+/// Values of fields: plain data, whatever the model. Parameters are made of single precision; the formulas take any.
+#[derive(Clone, Copy, Debug)]
+pub struct Values<T = f32> {
+    fields: &'static [Field],
+    numbers: [T; MOST],
+    given: u32,
+}
+
+const MOST: usize = 32;
+
+impl<T: Copy + Default> Values<T> {
+    /// No value yet.
+    #[inline]
+    #[must_use]
+    pub fn none(fields: &'static [Field]) -> Self {
+        Self {
+            fields,
+            numbers: [T::default(); MOST],
+            given: 0,
+        }
+    }
+
+    /// The same fields with every number converted.
+    #[inline]
+    #[must_use]
+    pub fn map<U>(&self, convert: impl FnMut(T) -> U) -> Values<U> {
+        Values {
+            fields: self.fields,
+            numbers: self.numbers.map(convert),
+            given: self.given,
+        }
+    }
+
+    /// The fields.
+    #[inline]
+    #[must_use]
+    pub const fn fields(&self) -> &'static [Field] {
+        self.fields
+    }
+
+    /// Sets the numbers of the field `name`, and takes away the fields that it stands for.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such field, or it has another count of numbers.
+    #[inline]
+    pub fn set(&mut self, name: &str, numbers: &[T]) -> Result<(), FieldError> {
+        let index = self.index(name).ok_or(FieldError::Name)?;
+        self.set_at(index, numbers)
+    }
+
+    /// Sets the numbers of the field of this index: see [`set`](Self::set).
+    ///
+    /// # Errors
+    ///
+    /// If there is no such field, or it has another count of numbers.
+    #[inline]
+    pub fn set_at(&mut self, index: usize, numbers: &[T]) -> Result<(), FieldError> {
+        let field = self.fields.get(index).ok_or(FieldError::Name)?;
+        let count = field.kind.width();
+        if numbers.len() != count {
+            return Err(FieldError::Count(count));
+        }
+        let at = self.offset(index);
+        self.numbers[at..at + count].copy_from_slice(numbers);
+        for (other, of) in self.fields.iter().enumerate() {
+            if field.excludes(of) {
+                self.given &= !(1 << other);
+            }
+        }
+        self.given |= 1 << index;
+        Ok(())
+    }
+
+    /// With a value for the field `name`: see [`set`](Self::set).
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field, or it has another count of numbers.
+    #[inline]
+    #[must_use]
+    pub fn with(mut self, name: &str, numbers: &[T]) -> Self {
+        self.set(name, numbers)
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
+        self
+    }
+
+    /// Without a value for the field `name`.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field.
+    #[inline]
+    #[must_use]
+    pub fn without(mut self, name: &str) -> Self {
+        self.given &= !(1 << self.known(name));
+        self
+    }
+
+    /// Whether the field `name` has a value.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field.
+    #[inline]
+    #[must_use]
+    pub fn has(&self, name: &str) -> bool {
+        self.has_at(self.known(name))
+    }
+
+    /// The numbers of the field `name`, 0 if it has no value.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field.
+    #[inline]
+    #[must_use]
+    pub fn numbers(&self, name: &str) -> &[T] {
+        self.numbers_at(self.known(name))
+    }
+
+    /// Whether the field of this index has a value.
+    #[inline]
+    #[must_use]
+    pub const fn has_at(&self, index: usize) -> bool {
+        index < MOST && self.given >> index & 1 == 1
+    }
+
+    /// The numbers of the field of this index, 0 if it has no value.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field.
+    #[inline]
+    #[must_use]
+    pub fn numbers_at(&self, index: usize) -> &[T] {
+        let at = self.offset(index);
+        &self.numbers[at..at + self.fields[index].kind.width()]
+    }
+
+    /// The `N` numbers of the field `name`: see [`numbers`](Self::numbers).
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field, or it has another count of numbers.
+    #[inline]
+    #[must_use]
+    pub fn get<const N: usize>(&self, name: &str) -> [T; N] {
+        self.get_at(self.known(name))
+    }
+
+    /// The `N` numbers of the field of this index, 0 if it has no value.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field, or it has another count of numbers.
+    #[inline]
+    #[must_use]
+    pub fn get_at<const N: usize>(&self, index: usize) -> [T; N] {
+        let Ok(numbers) = self.numbers_at(index).try_into() else {
+            panic!("the field has another count of numbers")
+        };
+        numbers
+    }
+
+    /// The number of the field of this index, 0 if it has no value.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field, or it has several numbers.
+    #[inline]
+    #[must_use]
+    pub fn number_at(&self, index: usize) -> T {
+        let [number] = self.get_at(index);
+        number
+    }
+
+    /// The index of the field `name`.
+    #[inline]
+    #[must_use]
+    pub fn index(&self, name: &str) -> Option<usize> {
+        self.fields.iter().position(|field| field.name == name)
+    }
+
+    /// The index of a field that there is.
+    #[inline]
+    fn known(&self, name: &str) -> usize {
+        self.index(name).expect("a field of the model")
+    }
+
+    /// Where the numbers of a field begin.
+    #[inline]
+    fn offset(&self, index: usize) -> usize {
+        let before = &self.fields[..index];
+        before.iter().map(|field| field.kind.width()).sum()
+    }
+}
+
+impl Values {
+    /// Largest count of numbers of a model, and of its fields.
+    pub const MOST: usize = MOST;
+
+    /// Sets the word of the field `name`, and takes away the fields that it stands for.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such field, or it has no such word.
+    #[inline]
+    pub fn set_word(&mut self, name: &str, word: &str) -> Result<(), FieldError> {
+        let index = self.index(name).ok_or(FieldError::Name)?;
+        let Kind::Word(words) = self.fields[index].kind else {
+            return Err(FieldError::Word(&[]));
+        };
+        let mut places = words.iter().zip(0_u8..);
+        let place = places.find(|(one, _)| **one == word);
+        let (_, place) = place.ok_or(FieldError::Word(words))?;
+        self.set_at(index, &[f32::from(place)])
+    }
+
+    /// With a word for the field `name`: see [`set_word`](Self::set_word).
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field, or it has no such word.
+    #[inline]
+    #[must_use]
+    pub fn with_word(mut self, name: &str, word: &str) -> Self {
+        self.set_word(name, word)
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
+        self
+    }
+
+    /// The word of the field `name`, its first if it has no value.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field, or it has no words.
+    #[inline]
+    #[must_use]
+    pub fn word(&self, name: &str) -> &'static str {
+        let Kind::Word(words) = self.fields[self.known(name)].kind else {
+            panic!("not a field of words")
+        };
+        let [number] = self.get(name);
+        words
+            .iter()
+            .zip(0_u8..)
+            .find(|(_, place)| f32::from(*place) == number)
+            .map_or(words[0], |(word, _)| word)
+    }
+}
+
+impl<T: PartialEq> PartialEq for Values<T> {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.fields == other.fields && self.given == other.given && self.numbers == other.numbers
+    }
+}
