@@ -3,7 +3,8 @@
 use core::f64::consts::PI;
 use hairis::random;
 use hairis_conformance::published::quadrature::{self, POINTS};
-use hairis_reference::{Real, Reference};
+use hairis_conformance::statistics;
+use hairis_reference::Reference;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
@@ -138,7 +139,7 @@ pub(crate) fn chi_square(
             *cell += mass * f64::from(COUNT);
         }
     }
-    let mut observed = vec![0.0; expected.len()];
+    let mut observed = vec![0; expected.len()];
     let mut rng = ChaCha8Rng::seed_from_u64(0x5eed);
     for _ in 0..COUNT {
         let drawn = fiber.sample(random::xi(&mut rng).map(f64::from));
@@ -152,28 +153,7 @@ pub(crate) fn chi_square(
         let column = (1..SECTORS)
             .filter(|n| *n as f64 * sector <= azimuth)
             .count();
-        observed[row * SECTORS + column] += 1.0;
+        observed[row * SECTORS + column] += 1;
     }
-    chi_square_p(&observed, &expected)
-}
-
-/// The chi-square test's probability, by the normal approximation of Wilson and Hilferty.
-fn chi_square_p(observed: &[f64], expected: &[f64]) -> f64 {
-    let (mut pooled, mut statistic, mut cells) = ([0.0; 2], 0.0, 0_u32);
-    for (&o, &e) in observed.iter().zip(expected) {
-        if e < 5.0 {
-            pooled = [pooled[0] + o, pooled[1] + e];
-        } else {
-            statistic += (o - e) * (o - e) / e;
-            cells += 1;
-        }
-    }
-    if pooled[1] >= 5.0 {
-        statistic += (pooled[0] - pooled[1]).powi(2) / pooled[1];
-        cells += 1;
-    }
-    let freedom = f64::from(cells - 1);
-    let spread = 2.0 / (9.0 * freedom);
-    let z = ((statistic / freedom).cbrt() - (1.0 - spread)) / spread.sqrt();
-    0.5 * Real::erfc(z / 2.0_f64.sqrt())
+    statistics::chi_square(&observed, &expected, 5.0).p_value
 }
