@@ -5,7 +5,7 @@ use crate::ParamError;
 
 /// Mean length of a passage through the fibre, in radii: `2 mean(cos gamma_t)` over offsets `h` across it, with
 /// `sin gamma_t = h / eta` and an index of refraction of 1.55 at normal incidence, `sqrt(1 - 1/eta^2) + eta asin(1 / eta)`.
-const PASSAGE: f32 = 1.850_958;
+const PASSAGE: f32 = 1.850_959_7;
 
 /// Absorption per fibre radius, linear RGB, of these concentrations of melanin.
 ///
