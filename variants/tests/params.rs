@@ -88,10 +88,10 @@ fn chiang_refuses_by_field_and_value() {
 #[test]
 fn helpers_refuse_by_field_and_value() {
     let desc = ChiangDesc::default();
-    assert_range("amount", [0.0, 1.0], |x| {
+    assert_range("melanin_amount", [0.0, 1.0], |x| {
         desc.with_melanin_amount(x, 0.5).map(|_| ())
     });
-    assert_range("redness", [0.0, 1.0], |x| {
+    assert_range("melanin_amount", [0.0, 1.0], |x| {
         desc.with_melanin_amount(0.5, x).map(|_| ())
     });
     assert_range("color", [0.0, 1.0], |x| {

@@ -363,7 +363,7 @@ mod tests {
             ),
             (
                 r#","color":[0,1.5,0]"#,
-                "params.color: must be in [0, 1], got 1.5",
+                "params.color[1]: must be in [0, 1], got 1.5",
             ),
             (
                 r#","sigma_a":[0,0,0],"eta":0.5"#,

@@ -101,6 +101,13 @@ impl<M: Model> Bsdf<M> {
         })
     }
 
+    /// The constants of the model at this hit, for what a model offers beside the calls of every model.
+    #[inline]
+    #[must_use]
+    pub const fn constants(&self) -> &M::Prepared<f32> {
+        &self.prepared
+    }
+
     /// The hit with only some of its lobes: the others neither scatter nor are sampled.
     #[inline]
     #[must_use]

@@ -116,8 +116,12 @@ impl Leaf for Triangles {
         ];
         let least = sides[0].min(sides[1]).min(sides[2]);
         let most = sides[0].max(sides[1]).max(sides[2]);
-        let edge = |to: [L; 3]| [to[0] - a[0], to[1] - a[1], to[2] - a[2]];
-        let normal = cross(edge(b), edge(c));
+        // From the corners themselves: those seen from the ray's origin have lost digits of small triangles.
+        let edge = |to: &[f32x8; 3]| -> [L; 3] {
+            let (to, from): ([L; 3], [L; 3]) = (lanes3(to), lanes3(&self.corners[0]));
+            [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
+        };
+        let normal = cross(edge(&self.corners[1]), edge(&self.corners[2]));
         let t = dot(normal, a) / dot(normal, ray.direction);
         let within = L::and(L::splat(0.0).lt(t), t.lt(L::splat(limit)));
         // No two sides have opposite signs.
