@@ -15,6 +15,7 @@ ROWS = {
     "Pdf": "eval_columns-pdf",
     "Samples": "sample_columns",
     "Weights": "sample_columns-weight",
+    "SomeSamples": "sample_columns-some",
     "Proposed": "propose_columns",
 }
 PACKETS = {
@@ -54,13 +55,13 @@ def entry(name):
         return None
     if "::Matched<" in name:
         model += "-matched"
-    found = re.search(r"dispatch::(rows|eights)_(avx\w+|portable)::<.*packet::(\w+)>, \d+, \d+>$", name)
+    found = re.search(r"dispatch::(rows|eights)_(avx\w+|portable)::<.*kernels::(\w+)>, \d+, \d+>$", name)
     if found and found[3] in ROWS:
         return ROWS[found[3]] + ("-eights" if found[1] == "eights" else ""), model, found[2]
-    found = re.search(r"dispatch::(rows|eights|run)_(avx\w+|portable)::<hairis::packet::(\w+)<.*>(?:, \d+, \d+)?>$", name)
+    found = re.search(r"dispatch::(rows|eights|run)_(avx\w+|portable)::<hairis::handle::kernels::(\w+)<.*>(?:, \d+, \d+)?>$", name)
     if found and found[3] in OF_MODEL:
         return OF_MODEL[found[3]] + ("-eights" if found[1] == "eights" else ""), model, found[2]
-    found = re.search(r"dispatch::run_(avx\w+)::<hairis::packet::(\w+)<.*?, (f32|wide::[\w:]+)(?:, .*)?>>$", name)
+    found = re.search(r"dispatch::run_(avx\w+)::<hairis::handle::kernels::(\w+)<.*?, (f32|wide::[\w:]+)(?:, .*)?>>$", name)
     if found and found[2] in PACKETS:
         base, shared, own = PACKETS[found[2]]
         suffix = shared if found[3] == "f32" else own

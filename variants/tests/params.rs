@@ -99,8 +99,8 @@ fn helpers_refuse_by_field_and_value() {
     });
     for value in FORBIDDEN.into_iter().chain([-1e-3]) {
         for (field, result) in [
-            ("eumelanin", desc.with_melanin(value, 0.1)),
-            ("pheomelanin", desc.with_melanin(0.1, value)),
+            ("melanin", desc.with_melanin(value, 0.1)),
+            ("melanin", desc.with_melanin(0.1, value)),
             (
                 "factor",
                 KajiyaKayParams::default().scaled(value).map(|_| desc),

@@ -192,8 +192,7 @@ fn scene(head: Option<Head>) -> Scene {
 fn a_mesh_shades_as_the_ellipsoid_that_it_is() {
     let ellipsoid = Ellipsoid {
         centre: Vec3::ZERO,
-        // Within the bounds of the hair, by which both scenes are framed.
-        radii: 0.9 * HEAD,
+        radii: 0.98 * HEAD,
     };
     let [none, smooth, facets] = [
         None,

@@ -109,10 +109,21 @@ impl Leaf for Triangles {
             from(&self.corners[1]),
             from(&self.corners[2]),
         ];
+        // Their parts across the ray are as short as the triangle: products of the whole vectors
+        // would have rounding errors larger than a small triangle far away.
+        let across = |v: [L; 3]| {
+            let along = dot(ray.direction, v);
+            [
+                v[0] - ray.direction[0] * along,
+                v[1] - ray.direction[1] * along,
+                v[2] - ray.direction[2] * along,
+            ]
+        };
+        let [p, q, r] = [across(a), across(b), across(c)];
         let sides = [
-            dot(ray.direction, cross(a, b)),
-            dot(ray.direction, cross(b, c)),
-            dot(ray.direction, cross(c, a)),
+            dot(ray.direction, cross(p, q)),
+            dot(ray.direction, cross(q, r)),
+            dot(ray.direction, cross(r, p)),
         ];
         let least = sides[0].min(sides[1]).min(sides[2]);
         let most = sides[0].max(sides[1]).max(sides[2]);
