@@ -24,23 +24,21 @@ impl<M: Model> Bsdf8<M> {
     #[inline]
     #[must_use]
     pub fn conserving(&self) -> Self {
-        self.level.run(Conserve(self))
+        let level = self.level;
+        let kernel = Conserve::<M>(&self.prepared);
+        level.run_into(kernel, |prepared| Self { prepared, level })
     }
 }
 
-struct Conserve<'a, M: Model>(&'a Bsdf8<M>);
+struct Conserve<'a, M: Model>(&'a M::Prepared<f32x8>);
 
 impl<M: Model> Kernel for Conserve<'_, M> {
-    type Output = Bsdf8<M>;
+    type Output = M::Prepared<f32x8>;
     const MANY_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Bsdf8<M> {
-        let Bsdf8 { prepared, level } = self.0;
-        Bsdf8 {
-            prepared: M::conserve::<L>(prepared),
-            level: *level,
-        }
+    fn run<L: Lanes<Stored = f32x8>>(self) -> M::Prepared<f32x8> {
+        M::conserve::<L>(self.0)
     }
 }
 
