@@ -62,15 +62,13 @@ struct Hits<M: Model<Params: Parameters>> {
 impl<M: Model<Params: Parameters>> Hits<M> {
     /// The presets, and a material with narrow lobes.
     fn new(model: M) -> Self {
-        let narrow =
-            M::Params::FIELDS
-                .iter()
-                .fold(M::Params::PRESETS[0].1.values(), |values, field| {
-                    match (field.narrow, field.kind.width()) {
-                        (Some(x), width) => values.with(field.name, &[x; 4][..width]),
-                        (None, _) => values,
-                    }
-                });
+        let narrow = M::Params::FIELDS.iter().fold(
+            M::Params::PRESETS[0].1.values(),
+            |values, field| match (field.narrow, field.kind.width()) {
+                (Some(x), width) => values.with(field.name, &[x; 4][..width]),
+                (None, _) => values,
+            },
+        );
         let narrow = M::Params::from_values(&narrow).unwrap_or_default();
         let presets = M::Params::PRESETS;
         let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
