@@ -72,7 +72,16 @@ def entry(name):
     return None
 
 # Calls of memset and memcpy that the compiler makes of buffers and shading points: by opt-level and model, at most.
-COPIES = {("s", "kajiya-kay"): 1, ("s", "chiang"): 2, ("s", "chiang-by-channel"): 2}
+# Since the constants of a material are spread field by field, prepare8 copies those of its sampler at "s".
+COPIES = {
+    ("s", "kajiya-kay"): 1,
+    ("s", "chiang"): 2,
+    ("s", "chiang-by-channel"): 3,
+    ("s", "gaussian"): 1,
+    ("s", "gaussian-matched"): 1,
+    ("s", "cauchy"): 1,
+    ("s", "cauchy-matched"): 1,
+}
 
 
 def body(program, table, address):
