@@ -127,6 +127,11 @@ pub(crate) const SAMPLE: [&str; 11] = [
     "weight.b", "slot",
 ];
 
+/// Names of the columns of a sample that a path tracer needs.
+pub(crate) const SAMPLE_WEIGHT: [&str; 7] = [
+    SAMPLE[0], SAMPLE[1], SAMPLE[2], SAMPLE[6], SAMPLE[7], SAMPLE[8], SAMPLE[9],
+];
+
 #[inline(always)]
 fn three(columns: Option<[&mut [f32]; 3]>) -> [Option<&mut [f32]>; 3] {
     columns.map_or([None, None, None], |columns| columns.map(Some))

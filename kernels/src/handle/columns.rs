@@ -7,8 +7,8 @@
 use super::Bsdf;
 use super::kernels::{AtBsdf, Pdf, Samples, SomeSamples, Value, ValuePdf, Weights};
 use crate::columns::{
-    EvalColumns, LengthError, SAMPLE, SampleColumns, VALUE_PDF, WI, XI, check_columns,
-    check_lengths3,
+    EvalColumns, LengthError, SAMPLE, SAMPLE_WEIGHT, SampleColumns, VALUE_PDF, WI, XI,
+    check_columns, check_lengths3,
 };
 use crate::model::Model;
 use crate::simd::Row;
@@ -78,21 +78,8 @@ impl<M: Model> Bsdf<M> {
                 weight: Some([wr, wg, wb]),
                 slot: None,
             } => {
-                let [
-                    u_name,
-                    v_name,
-                    w_name,
-                    _,
-                    _,
-                    _,
-                    pdf_name,
-                    r_name,
-                    g_name,
-                    b_name,
-                    _,
-                ] = SAMPLE;
-                let names = &[u_name, v_name, w_name, pdf_name, r_name, g_name, b_name];
-                self.run::<Weights, 7>(&XI, xi, names, [u, v, w, pdf, wr, wg, wb])
+                let out = [u, v, w, pdf, wr, wg, wb];
+                self.run::<Weights, 7>(&XI, xi, &SAMPLE_WEIGHT, out)
             }
             out => {
                 check_lengths3(xi[0].len(), XI, xi)?;

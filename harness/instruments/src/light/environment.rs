@@ -65,7 +65,7 @@ pub struct Environment {
     row_guide: Vec<u32>,
     column_guide: Vec<u32>,
     repairs: PixelRepairs,
-    /// What a reader had to do to the values of a file.
+    /// Remarks of a reader on how it changed the values of a file.
     remarks: Vec<String>,
 }
 

@@ -85,7 +85,7 @@ impl Environment {
 struct Map {
     size: [usize; 2],
     pixels: Vec<[f32; 3]>,
-    /// What had to be done to the values of the file, one line each.
+    /// Remarks on how the values of the file were changed, one line each.
     remarks: Vec<String>,
 }
 

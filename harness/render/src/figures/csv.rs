@@ -19,7 +19,7 @@ use hairis_instruments::stats::Estimate;
 use serde::Serialize;
 use std::path::Path;
 
-/// What the figures depend on: `figures.json`.
+/// Settings that the figures depend on: `figures.json`.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct FiguresSettings {
     /// The command line, with the names of maps alone, and without folders.
@@ -30,7 +30,7 @@ pub(super) struct FiguresSettings {
     strands: usize,
     /// Pictures for each error.
     pictures_per_error: u32,
-    /// What times are.
+    /// Meaning of the times.
     time: &'static str,
     machine: Machine,
 }

@@ -66,7 +66,7 @@ struct Axis {
     length: usize,
 }
 
-/// What a header says about pixels.
+/// Statements of a header about pixels.
 #[derive(Debug, PartialEq)]
 struct Header {
     is_xyz: bool,

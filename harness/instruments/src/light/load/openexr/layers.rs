@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 /// Layers and channels that a message names at most.
 const MOST_NAMES: usize = 24;
 
-/// What the three channels of a layer are.
+/// Meaning of the three channels of a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Colour {
     Rgb,
