@@ -37,7 +37,7 @@ pub enum Given {
     /// Contribution (as value) and weight (as density) of this direction as a candidate under the sky of
     /// [`resample`](crate::resample).
     Candidate(Vec3),
-    /// The same of a direction for these numbers.
+    /// Value, density and weight of the direction that a sampler returns for these numbers.
     Proposal([f32; 3]),
     /// Contribution of whichever candidate is in the answer.
     Kept,

@@ -37,15 +37,15 @@ pub enum TimedOp {
     SampleTails,
     /// A shading point of its own for each direction, and its value and density: all on one head of hair.
     PointsEval,
-    /// The same, and one sample with its value.
+    /// Preparing one material's shading points, and one sample with its value at each.
     PointsShared,
-    /// The same with four samples per shading point.
+    /// Preparing shading points, and four samples at each.
     PointsOf4,
     /// With sixteen.
     PointsOf16,
     /// With one, on eight heads of hair, one per lane, packed once.
     PointsMixed,
-    /// The same, packed anew for each eight shading points.
+    /// Eight materials packed anew for each eight shading points.
     PointsPacked,
 }
 

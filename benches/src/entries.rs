@@ -274,7 +274,7 @@ impl<M: Formulas> Of<'_, M> {
         }
     }
 
-    /// The same on eight heads of hair.
+    /// Calls on eight heads of hair at once.
     fn mixed_hair(&self, i: usize, given: Given) -> Asked {
         Asked {
             values: params::<M>()[i % 8].values(),

@@ -17,7 +17,7 @@ pub const DIRECTIONS: usize = 1024;
 pub struct Inputs {
     /// Directions uniform over the sphere: towards the light.
     pub wi: Vec<Vec3>,
-    /// The same, towards the viewer.
+    /// Directions towards the viewer.
     pub wo: Vec<Vec3>,
     /// Uniform numbers.
     pub xi: Vec<[f32; 3]>,

@@ -12,9 +12,9 @@ pub trait Function: Copy + Default + Debug {
     const RANGE: [[f32; 2]; 2];
     /// The function.
     fn lanes<L: Lanes>(x: L, y: L) -> [L; 2];
-    /// The same on `libm`.
+    /// Function on `libm`.
     fn libm(x: f32, y: f32) -> [f32; 2];
-    /// The same in `f64`.
+    /// Function in `f64`.
     fn truth(x: f64, y: f64) -> [f64; 2];
 }
 

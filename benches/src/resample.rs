@@ -37,7 +37,7 @@ fn sky_along(x: f32) -> f32 {
     1.0 + 0.5 * x
 }
 
-/// The same in eight directions.
+/// Radiance of the sky in eight directions.
 #[must_use]
 pub fn sky8(wi: &Vec3x8) -> [f32x8; 3] {
     [wi.x, wi.y, wi.z].map(|x| f32x8::splat(1.0) + f32x8::splat(0.5) * x)
@@ -199,7 +199,7 @@ pub struct Stream {
 pub const STREAMED: usize = 2 * PACKETS * 8;
 
 impl Stream {
-    /// Those of `inputs`, four packets of each technique at a time.
+    /// Makes pools of `inputs`, four packets of each technique at a time.
     #[must_use]
     pub fn of(inputs: &Inputs) -> Vec<Self> {
         let (xi, wi) = (xi_packets(&inputs.xi), packets(&inputs.wi));

@@ -39,7 +39,7 @@ pub trait Task {
     fn answers(&mut self) -> Vec<Answer>;
 }
 
-/// The same as one pass: all calls, timed as one loop behind a dynamic call.
+/// One pass over all calls, timed as one loop behind a dynamic call.
 pub trait Pass {
     /// Makes all calls; results are dropped.
     fn pass(&mut self);

@@ -134,7 +134,7 @@ pub struct AgreementResult {
     pub unexplained: usize,
     /// Whether the largest error is within the bound, of at least one direction.
     pub passed: bool,
-    /// Where the largest error was made; of those unexplained, if there are any.
+    /// Case of the largest error; of those unexplained, if there are any.
     pub worst_case: Option<WorstCase>,
 }
 

@@ -25,7 +25,7 @@ use serde::Serialize;
 pub struct Comparison {
     /// The command's settings.
     pub settings: CompareSettings,
-    /// Where it ran, and what ran.
+    /// Machine and build that ran it.
     pub machine: Machine,
     /// Time a direction.
     pub speed: SpeedReport,

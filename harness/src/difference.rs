@@ -51,7 +51,7 @@ const LATITUDES: usize = 96;
 /// Choice of the widths of the Cauchy model: a factor `k` on those of the Gaussian one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
-    /// The same widths, as in the paper: [`Cauchy::PAPER`].
+    /// Equal widths, as in the paper: [`Cauchy::PAPER`].
     Paper,
     /// Bells as high at half their peak: [`Cauchy::HALF_WIDTH`].
     HalfWidth,

@@ -103,9 +103,9 @@ fn of_sampler(each: &EachSampler<f64>, sampler: Sampler) -> f64 {
 /// Time of one sample of one model on the eight-lane path, in ns: set-up amortised over 16 samples, lights excluded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SampleCosts {
-    /// Of the Gaussian model, in the order of [`SAMPLERS`].
+    /// Results of the Gaussian model, in the order of [`SAMPLERS`].
     pub gaussian: EachSampler<f64>,
-    /// Of the Cauchy model.
+    /// Results of the Cauchy model.
     pub cauchy: EachSampler<f64>,
 }
 

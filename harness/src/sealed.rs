@@ -3,7 +3,7 @@
 use serde::Serialize;
 use std::io;
 
-/// What stands before the checksum of a line, and after.
+/// Text before and after the checksum of a line.
 const CHECKSUM: [&str; 2] = [",\"checksum\":\"", "\"}"];
 
 /// Hash of bytes (FNV-1a): in a line, of those before its checksum.

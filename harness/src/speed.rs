@@ -76,7 +76,7 @@ pub struct SpeedResult {
     pub ns_q1: f64,
     /// Third quartile of the same.
     pub ns_q3: f64,
-    /// How many times as fast as the faster reference: median over the rounds of the ratio within a round.
+    /// Speed-up over the faster reference: median over the rounds of the ratio within a round.
     pub ratio: f64,
     /// First quartile of the same.
     pub ratio_q1: f64,

@@ -70,9 +70,9 @@ use wide::f32x8;
 /// Samples of a cell. The first two are multiples of eight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StudyBudget {
-    /// Of each sampler of each model.
+    /// Samples of each sampler of each model.
     pub samples: usize,
-    /// Of each light that is not seen from everywhere.
+    /// Samples of each light that is not visible from everywhere.
     pub light_samples: usize,
     /// Pools of 32 + 32 candidates of each sampler and light, from whose parts rays are chosen; none if 0.
     pub pools: usize,

@@ -7,7 +7,7 @@ use hairis_harness::subject::random_hair;
 use hairis_instruments::direction::direction;
 use hairis_instruments::sequence::Independent;
 
-/// Where `wi` was put.
+/// Region that `wi` was drawn from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Region {
     /// Uniform on the sphere, as `wo` is.

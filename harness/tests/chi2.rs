@@ -151,7 +151,7 @@ fn matched(shape: Shape, bands: usize) -> impl Fn(&HairParams, Vec3) -> MatchedR
 struct SphereCells {
     theta: Vec<f64>,
     phi: Vec<f64>,
-    /// The same edges.
+    /// Edges of the inclinations and azimuths.
     edges: [AngleEdges; 2],
     /// Row by row, then one for the caps, whose samples are discarded.
     expected: Vec<f64>,

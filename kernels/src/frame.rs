@@ -53,7 +53,7 @@ impl<L: Lanes> Vec3x<L> {
         self.y.mul_add(self.y, self.z * self.z).sqrt()
     }
 
-    /// The same vector, its components read one by one: see
+    /// Copies the vector with its components read one by one: see
     /// [`Schedule::alone`](crate::simd::Schedule::alone). Callers have often just written them;
     /// what is read across two such writes waits until both have left the CPU's queue.
     #[inline(always)]
@@ -100,7 +100,7 @@ impl<L: Lanes> Vec3x<L> {
 }
 
 impl Vec3x8 {
-    /// The same vector in every lane.
+    /// Repeats one vector in every lane.
     #[inline]
     #[must_use]
     pub fn splat(v: Vec3) -> Self {
@@ -316,7 +316,7 @@ pub struct FiberFrame8 {
 }
 
 impl FiberFrame8 {
-    /// The same frame in every lane.
+    /// Repeats one frame in every lane.
     #[inline]
     #[must_use]
     pub fn splat(frame: &FiberFrame) -> Self {

@@ -41,7 +41,7 @@ use handle_impls;
 /// The level of a handle.
 macro_rules! level_methods {
     () => {
-        /// The same on another instruction set, which what is made of it inherits.
+        /// Selects another instruction set; handles made from this one inherit it.
         #[inline]
         #[must_use]
         pub const fn with_level(self, level: Level) -> Self {

@@ -63,7 +63,7 @@ pub trait Model: Copy {
         hit: Hit<L>,
     ) -> Self::Prepared<L::Stored>;
 
-    /// The same for one hit. A model whose lobes take the same steps may put them into lanes here.
+    /// Prepares one hit. A model whose lobes take the same steps may put them into lanes here.
     #[inline(always)]
     fn prepare_one(material: &Self::Material<f32>, hit: Hit<f32>) -> Self::Prepared<f32> {
         Self::prepare::<f32, f32>(material, hit)
@@ -173,7 +173,7 @@ impl From<&Vec3x<f32x8>> for Hit8 {
 }
 
 impl From<&Self> for Hit8 {
-    /// The same hits: by reference, so that they are read by vector code alone.
+    /// Copies hits by reference, so that vector code alone reads them.
     #[inline(always)]
     fn from(hits: &Self) -> Self {
         *hits

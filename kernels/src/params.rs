@@ -50,7 +50,7 @@ pub struct HairDesc<T = f32> {
 }
 
 impl<T: Copy> HairDesc<T> {
-    /// The same hair with every number converted.
+    /// Converts every number of the description.
     #[inline]
     #[must_use]
     pub fn map<U>(&self, convert: impl Fn(T) -> U) -> HairDesc<U> {
@@ -69,7 +69,7 @@ impl<T: Copy> HairDesc<T> {
 }
 
 impl<T: Copy + core::ops::Mul<Output = T>> HairDesc<T> {
-    /// The same hair with all five widths multiplied by `factor`; the bells, the sampler and the energies follow.
+    /// Multiplies all five widths by `factor`; the bells, the sampler and the energies follow.
     ///
     /// The Cauchy variant is published with the Gaussian widths unchanged (1). 1.177 matches the half width of the
     /// Gaussian, 0.798 its area.
@@ -143,7 +143,7 @@ impl HairParams {
         &self.0
     }
 
-    /// The same hair with every intensity multiplied by `factor`: with
+    /// Multiplies every intensity by `factor`: with
     /// [`Material::conserving_scale`](crate::Material::conserving_scale), hair that returns at most the light it receives.
     ///
     /// # Errors

@@ -7,7 +7,7 @@ use hairis::simd::{Broadcast, Choice, Kernel, LaneStruct, Lanes, Level, Path, Ro
 use hairis::{FiberFrame, Gaussian, HairParams, Hit, Matched, Published};
 use std::collections::HashSet;
 
-/// Where each of eight numbers falls among three bounds, and what tables hold there.
+/// Search of eight numbers among three bounds, and the entries of tables there.
 struct Search<'a, C> {
     x: &'a f32x8,
     bounds: [f32; 3],

@@ -249,7 +249,7 @@ pub trait Parameters: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     /// The first value out of its range; [`Field::refused`] finds its place.
     fn from_values(values: &Values) -> Result<Self, ParamError>;
 
-    /// The same fibre with every colour that scatters multiplied by `factor`; the energy-conserving fibre as it is.
+    /// Multiplies every colour that scatters by `factor`; the energy-conserving fibre stays as it is.
     ///
     /// # Errors
     ///

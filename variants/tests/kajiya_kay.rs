@@ -119,7 +119,7 @@ impl Subject for KajiyaKayFibers {
         }
     }
 
-    /// Where the highlight, and the density of its other side, end.
+    /// Inclinations at which the highlight, and the density of its other side, end.
     fn edges(&self, _params: &KajiyaKayParams, hit: &Hit) -> [Vec<f64>; 2] {
         let [u, v, w] = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
         let (theta_o, right) = (u.atan2(v.hypot(w)), core::f64::consts::FRAC_PI_2);

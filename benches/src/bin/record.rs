@@ -133,7 +133,7 @@ fn output(program: &str, words: &[&str]) -> Result<String, Box<dyn Error>> {
     Ok(String::from_utf8(done.stdout)?)
 }
 
-/// The same as the name of a folder.
+/// Name of a folder for a CPU's name.
 fn slug(cpu: &str) -> String {
     let plain = cpu.replace("(R)", "").replace("(TM)", "").to_lowercase();
     let words = plain

@@ -24,7 +24,7 @@ pub struct TimedInputs<P = Values> {
 }
 
 impl TimedInputs {
-    /// The same with the parameters of a model.
+    /// Makes the inputs with the parameters of a model.
     pub(super) fn typed<P: Parameters>(&self) -> Result<TimedInputs<P>, ParamError> {
         let Self {
             wi,

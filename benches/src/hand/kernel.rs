@@ -14,7 +14,7 @@ pub struct Constants {
     /// The part of `wo` across the fibre, with the digits that it has: next to `phi = pi` they decide.
     v_o: f32,
     w_o: f32,
-    /// The same of unit length.
+    /// Part of `wo` across the fibre, scaled to unit length.
     v_unit: f32,
     w_unit: f32,
     /// From half of `theta_i` to the distances from the centres of R, TT and TRT in widths: a factor and a term.
@@ -29,7 +29,7 @@ pub struct Constants {
     bounds: [f32; 3],
     /// Truncated Cauchy of each lobe's inclination: span and tangent of the middle; width and shift.
     inclination: [Table; 4],
-    /// The same of the azimuth: span, middle, half width, half of the centre; entries of TT first.
+    /// Tables of the azimuth: span, middle, half width, half of the centre; entries of TT first.
     azimuth: [Table; 4],
 }
 
@@ -145,7 +145,7 @@ fn tan_half_turn<V: Vector>(x: V) -> [V; 2] {
     ]
 }
 
-/// The same for `|x| <= pi/4`.
+/// Tangent as a quotient, for `|x| <= pi/4`.
 #[inline(always)]
 fn tan_quarter_turn<V: Vector>(x: V) -> [V; 2] {
     let z = (x * x).together();

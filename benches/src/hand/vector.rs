@@ -40,7 +40,7 @@ pub(super) trait Vector:
     const LANES: usize;
     fn splat(x: f32) -> Self;
     unsafe fn load(from: *const f32) -> Self;
-    /// The same of numbers that the caller has just written, by narrower stores.
+    /// Loads numbers that the caller has just written by narrower stores.
     #[inline(always)]
     unsafe fn load_fresh(from: *const f32) -> Self {
         // SAFETY: the caller's.
@@ -91,7 +91,7 @@ pub(super) trait Vector:
     fn is_tt(index: Self::Index) -> Self::Mask;
     fn is_glint(index: Self::Index) -> Self::Mask;
     fn look_up(table: &Table, index: Self::Index) -> Self;
-    /// Of a table whose first two entries are equal, and whose last two.
+    /// Looks up a table whose first two entries are equal, and whose last two.
     fn look_up_half(table: &Table, index: Self::Index) -> Self {
         Self::look_up(table, index)
     }

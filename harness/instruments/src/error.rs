@@ -49,7 +49,7 @@ pub enum Error {
     Interrupted {
         /// The signal.
         signal: Signal,
-        /// Where the work is, and how to continue.
+        /// Place of the saved work, and how to continue it.
         saved: String,
     },
 }

@@ -66,7 +66,7 @@ pub struct Render {
     /// Seconds after which no further pass begins, in place of a count of samples
     #[arg(long, value_name = "S")]
     pub time: Option<f64>,
-    /// Where uniform numbers come from
+    /// Source of uniform numbers
     #[arg(long, value_enum, default_value_t = Sequence::Sobol)]
     pub xi: Sequence,
     /// How directions towards rectangular lights are drawn
@@ -202,7 +202,7 @@ pub struct Figures {
     /// How light is estimated [default: by scene]
     #[arg(long, value_enum)]
     pub integrator: Option<Integrator>,
-    /// Where uniform numbers come from
+    /// Source of uniform numbers
     #[arg(long, value_enum, default_value_t = Sequence::Sobol)]
     pub xi: Sequence,
     /// How directions towards rectangular lights are drawn

@@ -3,7 +3,7 @@
 use crate::tree::Ray;
 use glam::{Quat, Vec3};
 
-/// Where the picture is taken from.
+/// Camera of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     eye: Vec3,

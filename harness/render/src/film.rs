@@ -160,7 +160,7 @@ pub struct Film {
     side: u32,
     /// The tiles, row by row.
     pub tiles: Vec<Tile>,
-    /// Where the time went, if that was measured.
+    /// Time by part of the work, if it was measured.
     pub profile: Profile,
 }
 
@@ -184,7 +184,7 @@ impl Film {
         Self::of(crop, side, crop.tiles(side).map(tile).collect())
     }
 
-    /// Of tiles of `side` pixels a side that are there already.
+    /// Makes a film of tiles of `side` pixels a side that exist already.
     #[must_use]
     pub fn of(crop: Crop, side: u32, tiles: Vec<Tile>) -> Self {
         Self {

@@ -98,7 +98,7 @@ impl Choice {
         })
     }
 
-    /// The same hair, sampled in another way. Of models without matched samplers, the published one
+    /// Selects another sampler. For models without matched samplers, the published one
     /// is the hair's own.
     ///
     /// # Errors

@@ -26,7 +26,7 @@ pub struct Beside {
     pub channels: Vec<Channel>,
     /// Names and values of the attributes.
     pub attributes: Vec<(&'static str, String)>,
-    /// Where the pixels lie in which picture: left column, upper row, and width and height of the whole. Without it they
+    /// Place of the pixels in a larger picture: left column, upper row, and width and height of the whole. Without it they
     /// are the whole.
     pub frame: Option<([u32; 2], [u32; 2])>,
 }

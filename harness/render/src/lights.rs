@@ -160,7 +160,7 @@ impl Sky {
         }
     }
 
-    /// The same along eight rays.
+    /// Looks along eight rays.
     #[must_use]
     pub fn see8(&self, directions: &Vec3x8) -> Seen8 {
         let Self::Map(map) = self else {

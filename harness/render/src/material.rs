@@ -27,7 +27,7 @@ pub enum Hair {
     Isotropic,
 }
 
-/// How much a model scatters of what it says: see [`Energy`](crate::hair::Energy).
+/// Treatment of the energy that a model scatters: see [`Energy`](crate::hair::Energy).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
     /// One factor on everything.

@@ -8,7 +8,7 @@ pub use even::Even;
 use clap::ValueEnum;
 use hairis_instruments::sequence::{HALTON_BASES, Halton, mix, to_unit_f32};
 
-/// Where the uniform numbers of a path come from.
+/// Source of the uniform numbers of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Sequence {
     /// Independent numbers

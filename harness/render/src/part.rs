@@ -40,7 +40,7 @@ pub struct Part {
     pub finished: bool,
 }
 
-/// Where the part of a picture lies while it is unfinished.
+/// Path of the part of an unfinished picture.
 #[must_use]
 pub fn path(picture: &Path) -> PathBuf {
     picture.with_extension("part")
@@ -138,7 +138,7 @@ impl Part {
         parse(bytes, is_sealed).ok().map(|(part, _)| part)
     }
 
-    /// The same whatever the digests, for tests of the reader.
+    /// Reads a part without checking digests, for tests of the reader.
     #[must_use]
     pub fn from_bytes_unchecked(bytes: &[u8]) -> Option<Self> {
         parse(bytes, |_, _| true).ok().map(|(part, _)| part)
@@ -261,7 +261,7 @@ impl Part {
     }
 }
 
-/// What the sums of a picture depend on beside flags: the build, and whether the CPU fuses multiply and add.
+/// Identity of the build that sums of a picture depend on: the build, and whether the CPU fuses multiply and add.
 pub(crate) fn build() -> String {
     let machine = machine!();
     // A commit does not tell builds with changes apart: their program does.
@@ -285,7 +285,7 @@ fn difference(found: &str, expected: &str) -> Option<String> {
     Some(format!("{found}, expected {expected}"))
 }
 
-/// What is wrong with a file without a whole header.
+/// Describes the fault of a file without a whole header.
 fn problem(path: &Path) -> String {
     let mut first = String::new();
     // What is no text is no part of any format.

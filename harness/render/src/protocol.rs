@@ -18,11 +18,11 @@ const FLOOR: f64 = 0.1;
 pub enum Measure {
     /// Mean square error.
     Mse,
-    /// The same without the pixels of the largest errors: see [`TRIMMED`].
+    /// Mean square error without the pixels of the largest errors: see [`TRIMMED`].
     TrimmedMse,
     /// Relative mean square error.
     RelMse,
-    /// The same without the pixels of the largest errors.
+    /// Relative mean square error without the pixels of the largest errors.
     TrimmedRelMse,
 }
 
@@ -86,7 +86,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Of two pictures that share no numbers.
+    /// Compares two pictures that share no numbers.
     #[must_use]
     pub fn new(a: &Picture, b: &Picture) -> Self {
         let mut picture = a.clone();
@@ -110,7 +110,7 @@ impl Reference {
         }
     }
 
-    /// The same, made in a time in seconds of a thread.
+    /// Sets the time that the picture took, in seconds of one thread.
     #[must_use]
     pub fn with_seconds(self, seconds: f64) -> Self {
         Self { seconds, ..self }

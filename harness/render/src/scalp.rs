@@ -5,7 +5,7 @@ use crate::scene::Ellipsoid;
 use clap::ValueEnum;
 use glam::{DVec3, Vec3};
 
-/// Where the ellipsoid under hair from a file comes from.
+/// Source of the ellipsoid under hair from a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Scalp {
     /// Fitted to the roots
@@ -191,7 +191,7 @@ impl Surface {
         (self.logs.element_sum() / 3.0).exp()
     }
 
-    /// What is minimised.
+    /// Cost that the fit minimises.
     fn cost(&self, places: &[DVec3], proportions: DVec3, outlier: f64) -> f64 {
         let of = |place: &DVec3| {
             let off = self.off(*place) / outlier;

@@ -35,7 +35,7 @@ pub enum Met {
 pub struct Scene {
     /// The fibres.
     pub strands: Strands,
-    /// Where they are.
+    /// Tree over the strands.
     pub tree: Tree,
     /// Their material.
     pub hair: Hair,
@@ -49,7 +49,7 @@ pub struct Scene {
     pub sky: Sky,
     /// Radiance that the camera sees where there is nothing, in place of the sky.
     pub backdrop: Option<Vec3>,
-    /// Where the picture is taken from.
+    /// Camera of the picture.
     pub camera: Camera,
     /// Rays that leave a surface start this far above it, in centimetres.
     pub gap: f32,

@@ -17,7 +17,7 @@ use hairis_instruments::light::{self, Environment};
 pub enum Name {
     /// A patch of parallel strands under a large light along them, glossy hair: Figure 6A
     Area,
-    /// The same with the model's default hair
+    /// Glossy patch of the model's default hair
     AreaSoft,
     /// A head under an area light, direct light: Figure 7A
     AreaHead,
@@ -25,7 +25,7 @@ pub enum Name {
     Env,
     /// A head in a Cornell box, hair that scatters light once: Figure 6C
     BoxSingle,
-    /// The same with multiple scattering: Figure 6D
+    /// Cornell box with multiple scattering: Figure 6D
     Box,
     /// A head under an area light, with multiple scattering: Figure 1
     Head,

@@ -97,7 +97,7 @@ impl Mis {
 pub struct Settings {
     /// How light is estimated.
     pub integrator: Integrator,
-    /// Where uniform numbers come from.
+    /// Source of uniform numbers.
     pub sequence: Sequence,
     /// Seed of the samples.
     pub seed: u64,
@@ -147,7 +147,7 @@ pub fn render(
     render_until(scene, settings, film, samples, progress, &|| false);
 }
 
-/// The same, but no further tile is begun once `stop` says so. It is asked after each tile: at
+/// Renders until `stop` returns true. It is asked after each tile: at
 /// least one gets its samples.
 pub fn render_until(
     scene: &Scene,

@@ -147,7 +147,7 @@ impl Tree {
         })
     }
 
-    /// How many nodes and blocks it has.
+    /// Number of nodes and blocks.
     #[must_use]
     pub fn size(&self) -> Visits {
         Visits {

@@ -1,4 +1,4 @@
-//! How much of the tree rays look at, and how many there are per second.
+//! Share of the tree that rays visit, and rays per second.
 
 use glam::Vec3;
 use hairis_render::geometry::{Flattening, Groom, Kind, Strands};

@@ -40,7 +40,7 @@ fn offset_has_the_sign_of_the_kernels() {
     }
 }
 
-/// Where two lines come nearest, in closed form from both conditions of perpendicularity: distance along the ray, place on
+/// Finds the nearest points of two lines in closed form from both conditions of perpendicularity: distance along the ray, place on
 /// the segment, signed offset across it, and how far the lines are apart beyond the radius there.
 fn nearest(
     start: DVec3,

@@ -38,7 +38,7 @@ impl Origin {
 pub enum Role {
     /// The worst of all cases the claim is made for.
     Everywhere,
-    /// The same within the limits of the [`Threshold`].
+    /// The worst of the cases within the limits of the [`Threshold`].
     WithinLimits,
     /// Explains; does not decide.
     Further,

@@ -92,7 +92,7 @@ pub fn report(of: &Comparison) -> Report {
     }
 }
 
-/// How many times as fast as the reference eight lanes are.
+/// Speed-up of eight lanes over the reference.
 fn speed_ratio(of: &Comparison, op: TimedOp, model: ModelKind) -> Option<String> {
     let row = of
         .speed
@@ -211,7 +211,7 @@ fn under_constant_light(of: &Comparison) -> Option<String> {
     ))
 }
 
-/// Where a sampler of the BSDF does worse than uniform directions.
+/// Lists where a sampler of the BSDF does worse than uniform directions.
 fn worse_than_uniform(of: &Comparison) -> Option<String> {
     let is_worse = |row: &&EfficiencyRow| {
         predicted(row, row.sampler) > 1.05 * predicted(row, Sampler::Uniform)

@@ -11,7 +11,7 @@ use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::{Table, number};
 use hairis_variants::ModelId;
 
-/// How much a set of tables holds.
+/// Extent of a set of tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Depth {
     /// The rows that fit a terminal.

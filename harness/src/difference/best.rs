@@ -8,7 +8,7 @@ pub(super) const RANGE: [f64; 2] = [0.5, 4.0];
 /// Widths to which the least is known, relative.
 const PRECISION: f64 = 1e-6;
 
-/// Where `f` is least in [`RANGE`]: the best of a scan, then golden sections on either side of it.
+/// Minimum of `f` in [`RANGE`]: the best of a scan, then golden sections on either side of it.
 ///
 /// # Errors
 ///

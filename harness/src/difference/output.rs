@@ -88,7 +88,7 @@ impl Difference {
         Summary::of(self.of(width).map(|row| of(&row.figures)))
     }
 
-    /// The same for each value of an axis of the grid.
+    /// Differences for each value of an axis of the grid.
     pub(crate) fn along(
         &self,
         axis: GridAxis,

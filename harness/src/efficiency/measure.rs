@@ -12,7 +12,7 @@ use hairis_instruments::stats::{Estimate, Moments};
 /// Moments of one cell, and the largest numbers seen on the way.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CellMoments {
-    /// Of single contributions, of those of pairs, or of the means of randomisations.
+    /// Moments of single contributions, of pairs, or of the means of randomisations.
     pub(super) moments: Moments,
     pub(super) max_weight: f64,
     pub(super) max_contribution: f64,

@@ -170,7 +170,7 @@ pub enum Technique {
     Light,
     /// From the scattering function alone.
     Bsdf(Sampler),
-    /// As many from both, by the power heuristic of exponent 2.
+    /// Equal numbers of samples from both, by the power heuristic of exponent 2.
     Mis(Sampler),
 }
 
@@ -274,7 +274,7 @@ pub struct SweepRow {
     pub n: usize,
     /// Relative variance per sample, as measured.
     pub v: Estimate,
-    /// The same by quadrature.
+    /// Value by quadrature.
     pub quadrature: f64,
     /// Distance of the two, in standard errors.
     pub z_quadrature: f64,

@@ -24,7 +24,7 @@ struct Columns<const S: usize> {
 }
 
 impl<const S: usize> Columns<S> {
-    /// As many candidates of each technique as the largest pool has; `block` gives those of the light, packet by packet.
+    /// Draws as many candidates of each technique as the largest pool has; `block` gives those of the light, packet by packet.
     fn draw(
         lit: Lit<'_>,
         sizes: [u32; S],
@@ -118,7 +118,7 @@ const fn is_light(place: usize) -> bool {
 /// Squared deviations of the plain estimators from the reference, and the means of those that see every light.
 #[derive(Default)]
 struct Plain {
-    /// Of the BSDF's sampler, the light's and one-sample MIS.
+    /// Moments of the BSDF's sampler, the light's and one-sample MIS.
     squares: [Moments; 3],
     light: Moments,
     mis: Moments,
@@ -192,7 +192,7 @@ impl Pooled {
     }
 }
 
-/// What a ray brings where it meets nothing, the mean of RGB.
+/// Contribution of an unoccluded ray, the mean of RGB.
 fn mean_of(choice: &Choice) -> f64 {
     choice.contribution.into_iter().map(f64::from).sum::<f64>() / 3.0
 }

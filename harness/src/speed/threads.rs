@@ -31,7 +31,7 @@ pub struct ThreadsResult {
     pub threads: usize,
     /// Millions of directions a second, all threads together: median over the rounds.
     pub millions: f64,
-    /// How many times as fast as one thread: median over the rounds of the ratio within a round.
+    /// Speed-up over one thread: median over the rounds of the ratio within a round.
     pub speedup: f64,
     /// First quartile of the same.
     pub speedup_q1: f64,

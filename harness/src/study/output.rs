@@ -134,7 +134,7 @@ impl Study {
         Self::join(&parts)
     }
 
-    /// What its rows depend on.
+    /// Header: inputs that the rows depend on.
     #[must_use]
     pub const fn header(&self) -> &Header {
         &self.header

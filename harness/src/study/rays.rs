@@ -46,7 +46,7 @@ pub(super) fn v(measured: &Measured, by: usize) -> Estimate {
     measured.rays.map_or(Estimate::UNKNOWN, |rays| rays[by])
 }
 
-/// The same with half of the directions visible.
+/// V with half of the directions visible.
 pub(super) fn half_visible(measured: &Measured, by: usize) -> Estimate {
     occluded(v(measured, by), HALF)
 }

@@ -20,7 +20,7 @@ pub(super) fn strategies() -> impl Iterator<Item = Strategy> + Clone {
     samplers().chain([None])
 }
 
-/// Those that can be run.
+/// Samplers that can be run.
 pub(super) fn samplers() -> impl Iterator<Item = Strategy> + Clone {
     Sampler::ALL.into_iter().map(Some)
 }

@@ -14,12 +14,12 @@ use hairis_instruments::table::{Table, number};
 /// The estimator that each of some estimators is compared with, and those.
 type Compared = (fn(Estimator) -> Estimator, Vec<Estimator>);
 
-/// The same strategy on the Gaussian model.
+/// Maps an estimator to the Gaussian model.
 pub(super) const fn on_gaussian((_, strategy): Estimator) -> Estimator {
     (ModelKind::Gaussian, strategy)
 }
 
-/// Those of some strategies that are not the published sampler, on each model.
+/// Pairs of strategies with the published sampler, on each model.
 fn over_published(of: impl Iterator<Item = Strategy> + Clone) -> Compared {
     (
         published,

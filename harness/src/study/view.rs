@@ -144,7 +144,7 @@ impl Study {
         )
     }
 
-    /// How many times the variance `base` has of `other` in equal time, [`MANY`] samples per shading point: median over
+    /// Ratio of the variance of `base` to that of `other` in equal time, [`MANY`] samples per shading point: median over
     /// the cells. `None` if no cell is sure, or a time unknown.
     pub(super) fn equal_time(
         &self,

@@ -223,7 +223,7 @@ fn parts_joined_are_the_same_as_one_run() {
     assert_same_rows(out.path(), "a part stopped and one twice");
 }
 
-/// How many look-ups of this light were timed in `dir`.
+/// Number of timed look-ups of this light in `dir`.
 fn look_ups(dir: &Path, environment: &str) -> usize {
     let times = fs::read_to_string(dir.join("times.csv")).unwrap();
     times

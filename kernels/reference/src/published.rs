@@ -63,7 +63,7 @@ struct Angles<T> {
 }
 
 impl<T: Real> Angles<T> {
-    /// Of a sample: an inclination, and an azimuth within a turn of [-pi, pi].
+    /// Angles of a sample: an inclination, and an azimuth within a turn of [-pi, pi].
     fn new(theta_i: T, phi: T) -> Self {
         let phi = wrapped(phi);
         Self {

@@ -15,7 +15,7 @@ use hairis_variants::{
 
 /// A model of the registry with its formulas.
 pub trait Formulas: Registered {
-    /// What the formulas need to know of a material, computed once.
+    /// Numbers that the formulas compute once per material.
     type Constants<T: Real>: Copy + Debug + Send + Sync;
     /// The formulas at one shading point.
     type Point<T: Real>: Reference<T> + Copy + 'static;
@@ -167,7 +167,7 @@ impl Bell for Cauchy {
     const ERRORS: [f64; 3] = [1e-5; 3];
 }
 
-/// Of the published sampler a weight is a value over a density: its bound is the sum of theirs. A cdf moves by 20 times as
+/// A weight of the published sampler is a value over a density: its bound is the sum of theirs. A cdf moves by 20 times as
 /// much as the angle on the narrowest lobe, of a degree, and the angle of a rounded direction by 2e-7 rad.
 impl<B: Bell> Formulas for Published<B> {
     type Constants<T: Real> = HairDesc<T>;

@@ -30,7 +30,7 @@ pub(crate) struct Angles<L: Lanes> {
 pub(crate) struct LobeTerms<L> {
     /// `M N`, with unit peaks: no colour, no strength.
     pub(crate) value: [L; 4],
-    /// The same of Cauchy bells, the glints cut at `pi/2`: the published sampler's density but for the shading point's
+    /// Products of Cauchy bells, the glints cut at `pi/2`: the published sampler's density but for the shading point's
     /// constants, and for `1 / cos theta_i`.
     pub(super) density: [L; 4],
     /// `1 / cos^2 theta_d`.

@@ -64,7 +64,7 @@ pub trait Bell: Copy {
 pub struct TwoBells<L> {
     /// Squared distance from the centre of the first, in widths.
     pub s: L,
-    /// That of the second.
+    /// Squared distance from the centre of the second, in widths.
     pub t: L,
     /// `1 / ((1 + s) (1 + t))`.
     pub cauchy: L,

@@ -19,7 +19,7 @@ crate::simd::lane_struct! {
         pub(in crate::hair) azimuth_density: [C; 2],
         /// Probability of choosing each lobe: its share of the energy.
         pub(in crate::hair) selection: [C; 4],
-        /// Where the next lobe begins in `xi_lobe`.
+        /// Start of the next lobe in `xi_lobe`.
         pub(in crate::hair) bounds: [C; 3],
     }
 }
@@ -45,7 +45,7 @@ crate::simd::lane_struct! {
         pub(in crate::hair) inclination_span: [C; 4],
         /// Density of each lobe but for its shape and for `1 / cos theta_i`.
         pub(in crate::hair) density: [C; 4],
-        /// The same times the probability of the lobe.
+        /// Density times the probability of the lobe.
         pub(in crate::hair) weight: [C; 4],
         /// The constants of the material.
         pub(in crate::hair) sampler: PublishedConstants<C>,

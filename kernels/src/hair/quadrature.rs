@@ -42,7 +42,7 @@ pub const GAUSS_LEGENDRE_32: [(f32, f32); 32] = [
 /// For integrands that change on any scale next to an end: the nodes next to it are 2e-11 away.
 pub(crate) const GRADED: [[f32; 3]; 72] = graded();
 
-/// The same rule with two thirds of the nodes: a digit less.
+/// Rule with two thirds of the nodes: a digit less.
 pub(crate) const COARSE: [[f32; 3]; 48] = graded();
 
 #[expect(

@@ -54,7 +54,7 @@ pub(crate) struct FoldedXi<L> {
 }
 
 impl<L: Lanes> FoldedXi<L> {
-    /// Of a number in `[0, 1]`, or NaN.
+    /// Splits a number in `[0, 1]`, or NaN.
     #[inline(always)]
     pub(crate) fn of(xi: L) -> Self {
         let side = xi + xi - 1.0;

@@ -22,7 +22,7 @@ pub struct Highlight {
     pub color: [f32; 3],
     /// Factor on `color`, finite and at least 0.
     pub intensity: f32,
-    /// Where the highlight sits along the fibre, degrees in [-90, 90]; the lobe's `alpha`, of the same sign.
+    /// Place of the highlight along the fibre, degrees in [-90, 90]; the lobe's `alpha`, of the same sign.
     ///
     /// Positive turns the lobe towards the tip (it peaks where `theta_i + theta_o` is twice the shift), so on hair
     /// that curves over a head the highlight moves towards the *root*; negative moves it towards the *tip*. Real hair

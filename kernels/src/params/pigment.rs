@@ -62,7 +62,7 @@ pub fn transmittance(sigma_a: [f32; 3]) -> Result<[f32; 3], ParamError> {
 }
 
 impl ArtistControls {
-    /// The same hair with the colours of this absorption per fibre radius, of pigment or dye: that of the transmission is
+    /// Sets the colours to those of this absorption per fibre radius, of pigment or dye: that of the transmission is
     /// [`transmittance`], that of the secondary highlight, whose light passes twice, its square. Intensities stay.
     ///
     /// # Errors
@@ -76,7 +76,7 @@ impl ArtistControls {
         Ok(self)
     }
 
-    /// The same hair with the colours of an artist's melanin: see [`melanin_concentrations`].
+    /// Sets the colours to those of an artist's melanin: see [`melanin_concentrations`].
     ///
     /// # Errors
     ///

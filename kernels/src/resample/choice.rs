@@ -5,9 +5,9 @@
 pub struct Choice {
     /// Index of the candidate.
     pub index: usize,
-    /// How many of the `k` choices it is, at least 1.
+    /// Number of the `k` choices that fell on it, at least 1.
     pub count: u32,
-    /// What the ray adds to the estimate where it meets nothing, linear RGB.
+    /// Contribution of the ray to the estimate if it is unoccluded, linear RGB.
     pub contribution: [f32; 3],
 }
 

@@ -214,7 +214,7 @@ impl<const N: usize> Pool<N> {
         })
     }
 
-    /// The same, by index.
+    /// Choices by index.
     #[inline]
     #[must_use]
     pub fn choices(&self, k: u32, u: f32) -> Choices<'_> {

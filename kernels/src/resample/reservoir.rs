@@ -66,7 +66,7 @@ impl Reservoir8 {
         });
     }
 
-    /// What the kept direction of each lane adds where it is visible, linear RGB.
+    /// Contribution of the kept direction of each lane if it is visible, linear RGB.
     #[inline]
     #[must_use]
     pub fn estimate(&self) -> [f32x8; 3] {

@@ -191,7 +191,7 @@ macro_rules! lane_struct {
         $vis struct $name<C $($(, const $N: usize)+)?> { $($(#[$field_meta])* $field_vis $field: $Field,)* }
 
         impl<C: Copy $($(, const $N: usize)+)?> $name<C $($(, $N)+)?> {
-            /// The same numbers in the storage of `L`: one number for all lanes becomes one per
+            /// Spreads the numbers to the storage of `L`: one number for all lanes becomes one per
             /// lane.
             #[inline(always)]
             #[must_use]

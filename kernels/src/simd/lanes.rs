@@ -47,7 +47,7 @@ pub trait Lanes:
     /// Whether [`mul_add`](Self::mul_add) rounds once.
     const FUSES: bool;
 
-    /// The same number in every lane.
+    /// Repeats a number in every lane.
     fn splat(x: f32) -> Self;
     /// The lanes in their storage form.
     fn store(self) -> Self::Stored;

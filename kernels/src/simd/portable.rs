@@ -62,7 +62,7 @@ impl<const FUSE: bool> Eight for Portable<FUSE> {
 const SIGN: f32x8 = f32x8::new([-0.0; 8]);
 const MAGNITUDE: f32x8 = f32x8::new([f32::from_bits(0x7fff_ffff); 8]);
 
-/// The same number in every lane. The operators of `f32x8` with a float do without it, those of
+/// Repeats a number in every lane. The operators of `f32x8` with a float do without it, those of
 /// [`Portable`] do not.
 ///
 /// `wide` fills an array, which the compiler leaves a loop over memory where it saves space: a packet took three to ten
@@ -154,7 +154,7 @@ macro_rules! eight_lanes {
 
         impl<$($generics)*> Lanes for $Lanes {
             type Mask = f32x8;
-            /// Where the chosen number is at least each of the three bounds.
+            /// Masks: the chosen number is at least each of the three bounds.
             type Index = [f32x8; 3];
             type Stored = f32x8;
             const FUSES: bool = $fuses;

@@ -216,7 +216,7 @@ pub fn everyday_input_raises_no_exception(subject: &dyn ErasedSubject) -> Outcom
     Ok(())
 }
 
-/// The same of one lane.
+/// Checks that calls on one lane raise no exception.
 fn scalar_is_quiet(
     material: NamedMaterial<'_>,
     one: &dyn ErasedBsdf,

@@ -31,7 +31,7 @@ pub trait ErasedSubject: Sync {
 pub enum Which {
     /// [`Subject::materials`].
     Everyday,
-    /// The same, and [`Subject::extremes`].
+    /// Materials of the subject, with [`Subject::extremes`].
     WithExtremes,
     /// The everyday ones, and [`Subject::random_materials`].
     WithRandom,

@@ -160,7 +160,7 @@ pub(crate) fn hits() -> [Hit; 7] {
     })
 }
 
-/// The same, and `count` from anywhere.
+/// Awkward hits, followed by `count` from anywhere.
 pub(crate) fn hits_and(count: usize, draws: &mut Draws) -> Vec<Hit> {
     hits()
         .into_iter()

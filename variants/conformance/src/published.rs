@@ -45,7 +45,7 @@ pub trait FamilyModel: Sync {
     /// Every form of the model, with its factor on the widths: the first is that of [`bell`](Self::bell).
     fn forms() -> Vec<(Self::Model, f32)>;
 
-    /// The same bell in the reference.
+    /// Bell of the reference that this kernel's bell is compared with.
     const SHAPE: Shape;
     /// Number of bands of the matched sampler; `None` for the published one.
     const BANDS: Option<usize> = None;

@@ -239,7 +239,7 @@ pub fn resampling_is_unbiased(subject: &dyn ErasedSubject) -> Outcome {
     check(subject, 1.0)
 }
 
-/// The same of estimates times `factor`.
+/// Checks estimates that are multiplied by `factor`.
 ///
 /// # Errors
 ///

@@ -41,7 +41,7 @@ pub trait Subject: Sync {
         Claims::default()
     }
 
-    /// Where densities jump or have a kink: inclinations and azimuths of `wi`, rad.
+    /// Inclinations and azimuths of `wi` in rad at which densities jump or have a kink.
     ///
     /// Quadrature refines where it has to, and starts from where samples fall. Edges that it is given make it faster and
     /// more accurate. Values outside the domain are ignored.

@@ -156,7 +156,7 @@ pub fn results_are_finite(subject: &dyn ErasedSubject) -> Outcome {
     sweep(subject, ROUNDS, vector)
 }
 
-/// The same for so many packets per material, of these directions.
+/// Checks so many packets per material, of these directions.
 pub(crate) fn sweep(
     subject: &dyn ErasedSubject,
     rounds: usize,

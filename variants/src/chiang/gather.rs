@@ -116,7 +116,7 @@ pub(super) fn four<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> Four<L> {
     )
 }
 
-/// The same number for all four.
+/// Repeats one number for all four lobes.
 #[inline(always)]
 pub(super) fn same<L: Lanes>(x: L) -> Four<L> {
     Pair(Pair(x, x), Pair(x, x))

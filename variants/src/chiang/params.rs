@@ -56,7 +56,7 @@ pub struct ChiangDesc<T = f32> {
 }
 
 impl<T: Copy> ChiangDesc<T> {
-    /// The same fibre with every number converted.
+    /// Converts every number of the description.
     #[inline]
     #[must_use]
     pub fn map<U>(&self, convert: impl Fn(T) -> U) -> ChiangDesc<U> {
@@ -86,7 +86,7 @@ impl ChiangDesc {
         }
     }
 
-    /// The same fibre with the absorption of these concentrations of melanin: see [`melanin_absorption`].
+    /// Sets the absorption to that of these concentrations of melanin: see [`melanin_absorption`].
     ///
     /// # Errors
     ///
@@ -101,7 +101,7 @@ impl ChiangDesc {
         })
     }
 
-    /// The same fibre with an artist's melanin, how dark and how red: see [`melanin_concentrations`].
+    /// Sets the absorption to that of an artist's melanin, how dark and how red: see [`melanin_concentrations`].
     ///
     /// # Errors
     ///
@@ -119,7 +119,7 @@ impl ChiangDesc {
         self.with_melanin(eumelanin, pheomelanin)
     }
 
-    /// The same fibre with the absorption that gives a mass of such hair about this colour.
+    /// Sets the absorption that gives a mass of such hair about this colour.
     ///
     /// `sigma_a = (ln color / (5.969 - .215 n + 2.532 n^2 - 10.73 n^3 + 5.574 n^4 + .245 n^5))^2`, `n` the `beta_n`
     ///
@@ -170,7 +170,7 @@ impl ChiangDesc {
         rounded(self.variance())
     }
 
-    /// The same before it is rounded, which narrow lobes magnify in their tails.
+    /// Variance in double precision: narrow lobes magnify rounding in their tails.
     #[inline]
     pub(super) fn variance(&self) -> f64 {
         let m = f64::from(self.beta_m);
@@ -187,7 +187,7 @@ impl ChiangDesc {
         rounded(self.scale())
     }
 
-    /// The same before it is rounded.
+    /// Scale in double precision.
     #[inline]
     pub(super) fn scale(&self) -> f64 {
         let n = f64::from(self.beta_n);
@@ -203,7 +203,7 @@ impl ChiangDesc {
         self.shifts().map(rounded)
     }
 
-    /// The same before they are rounded.
+    /// Shifts in double precision.
     #[inline]
     pub(super) fn shifts(&self) -> [f64; 4] {
         let (eta, tilt) = (f64::from(self.eta), f64::from(self.tilt));

@@ -51,7 +51,7 @@ pub struct KajiyaKayDesc<T = f32> {
 }
 
 impl<T: Copy> KajiyaKayDesc<T> {
-    /// The same fibre with every number converted.
+    /// Converts every number of the description.
     #[inline]
     #[must_use]
     pub fn map<U>(&self, convert: impl Fn(T) -> U) -> KajiyaKayDesc<U> {
@@ -72,7 +72,7 @@ impl KajiyaKayDesc {
         form: Form::Reciprocal,
     };
 
-    /// The same fibre with a highlight of this half width at half height in `theta_i + theta_o`.
+    /// Sets the highlight to this half width at half height in `theta_i + theta_o`.
     ///
     /// `exponent = -ln 2 / ln cos width`
     ///
@@ -181,7 +181,7 @@ impl KajiyaKayParams {
         &self.0
     }
 
-    /// The same fibre with both albedos multiplied by `factor`.
+    /// Multiplies both albedos by `factor`.
     ///
     /// # Errors
     ///

@@ -51,7 +51,7 @@ impl<T: Copy + Default> Values<T> {
         }
     }
 
-    /// The same fields with every number converted.
+    /// Converts the numbers of every field.
     #[inline]
     #[must_use]
     pub fn map<U>(&self, convert: impl FnMut(T) -> U) -> Values<U> {
@@ -219,7 +219,7 @@ impl<T: Copy + Default> Values<T> {
         self.index(name).expect("a field of the model")
     }
 
-    /// Where the numbers of a field begin.
+    /// Offset of the first number of a field.
     #[inline]
     fn offset(&self, index: usize) -> usize {
         let before = &self.fields[..index];

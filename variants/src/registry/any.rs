@@ -48,7 +48,7 @@ macro_rules! handle {
                 }
             }
 
-            /// The same on another instruction set, which what is made of it inherits.
+            /// Selects another instruction set; handles made from this one inherit it.
             #[inline]
             #[must_use]
             pub const fn with_level(self, level: Level) -> Self {
@@ -91,7 +91,7 @@ pub(super) use object;
 macro_rules! restricted {
     ($($any:ident)*) => { $(
         impl $any {
-            /// The same with only some of its lobes: the others neither scatter nor are sampled.
+            /// Keeps some lobes alone: the others neither scatter nor are sampled.
             #[inline]
             #[must_use]
             pub fn with_lobes(mut self, lobes: LobeMask) -> Self {
@@ -99,7 +99,7 @@ macro_rules! restricted {
                 self
             }
 
-            /// The same, returning no more light than arrives: see [`Conserving`](hairis::Conserving).
+            /// Limits the scattered light to the light that arrives: see [`Conserving`](hairis::Conserving).
             #[inline]
             #[must_use]
             pub fn conserving(mut self) -> Self {

@@ -1,4 +1,4 @@
-//! The same radiance from everywhere.
+//! Constant radiance from every direction.
 
 use super::{Light, LightSample, Seen8, rounded};
 use core::f64::consts::PI;

@@ -61,7 +61,7 @@ pub struct Environment {
     /// Cumulative weights over rows, and within each row over its columns; both start after the first element.
     rows: Vec<f64>,
     columns: Vec<f64>,
-    /// Where the searches in them begin: see [`guide`](inversion::guide).
+    /// Starting points of the searches in them: see [`guide`](inversion::guide).
     row_guide: Vec<u32>,
     column_guide: Vec<u32>,
     repairs: PixelRepairs,

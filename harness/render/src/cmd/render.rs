@@ -35,7 +35,7 @@ use std::time::Instant;
 
 /// Bounds of the time between two previews, which is half of the time since the start.
 const PREVIEW: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)];
-/// How many times as long as the last preview took a run goes on before the next.
+/// Least time between previews, in times of the last preview.
 const PREVIEW_SHARE: u32 = 10;
 
 /// The model of presets where none is asked for.

@@ -80,7 +80,7 @@ pub(super) fn write(
     write_json(&out.join("figures.json"), settings)
 }
 
-/// What a figure is of.
+/// Columns that identify a figure.
 #[derive(Clone, Debug)]
 struct Start {
     scene: String,

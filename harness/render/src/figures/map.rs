@@ -17,7 +17,7 @@ pub(super) struct Map {
 }
 
 impl Map {
-    /// Of signed errors: blue below 0, red above, white at 0; full colours at `most`.
+    /// Signed errors: blue below 0, red above, white at 0; full colours at `most`.
     pub(super) fn signed(name: &'static str, most: f64, remarks: &'static [&'static str]) -> Self {
         Self {
             name,
@@ -27,7 +27,7 @@ impl Map {
         }
     }
 
-    /// Of squared errors: by their logarithm, yellow at `most`.
+    /// Squared errors by their logarithm, yellow at `most`.
     pub(super) fn squared(name: &'static str, most: f64, remarks: &'static [&'static str]) -> Self {
         Self {
             name,

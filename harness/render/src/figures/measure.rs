@@ -38,7 +38,7 @@ pub(super) fn preset(name: Name) -> Result<Choice, Error> {
     Choice::find(MODEL, MATCHED, preset)
 }
 
-/// How much is rendered.
+/// Amount of rendering: scenes, samples, repetitions.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
     /// Width and height of pictures in pixels.
@@ -53,7 +53,7 @@ pub(super) struct Plan {
     pub(super) runs: u32,
     /// How light is estimated, in place of the scenes' own ways.
     pub(super) integrator: Option<Integrator>,
-    /// Where the samplers' uniform numbers come from; references are of Sobol' points.
+    /// Source of the samplers' uniform numbers; references are of Sobol' points.
     pub(super) sequence: Sequence,
     /// How directions towards rectangular lights are drawn.
     pub(super) rectangle_sampling: RectangleSampling,
@@ -84,7 +84,7 @@ impl Plan {
         rectangle_sampling: RectangleSampling::SolidAngle,
     };
 
-    /// What a scene with hair depends on, but for the light.
+    /// Key of a scene with hair, without its light.
     pub(super) fn scene(&self, name: Name, hair: &Choice) -> String {
         let Self {
             side,

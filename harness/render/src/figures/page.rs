@@ -164,7 +164,7 @@ fn left_out_text(names: &[String]) -> String {
     }
 }
 
-/// How many times as large errors times time are, scene by scene.
+/// Table of ratios of error times time, scene by scene.
 fn summary(all: &[Measured]) -> Table {
     let mut table = Table::new(format!("Error × time, relative to {}", best(all)))
         .texts(["scene", "light"])

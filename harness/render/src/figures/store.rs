@@ -27,7 +27,7 @@ const MAGIC: &str = "hairis-render measurement 2";
 /// Samples of a pixel that are added before others are, at shading points: each pass finds its
 /// points again, in next to no time beside so many samples.
 const GATHER_PASS: u32 = 1024;
-/// The same of paths.
+/// Samples per pass of paths.
 const PATH_PASS: u32 = 64;
 /// A picture that took longer is kept while the others of its measurement are rendered.
 const MOMENT: Duration = Duration::from_millis(300);
@@ -133,7 +133,7 @@ impl Store {
         Ok(Reference::new(&a.picture, &b.picture).with_seconds(a.seconds + b.seconds))
     }
 
-    /// Where the files are.
+    /// Folder of the files.
     pub(super) fn folder(&self) -> &Path {
         &self.folder
     }

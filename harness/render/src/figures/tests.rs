@@ -30,7 +30,7 @@ fn measured(plan: &Plan, seed: u64, out: &Path, last: usize) -> Option<(Measured
     measured_with(&hair, plan, seed, out, last)
 }
 
-/// The same with other hair.
+/// Measurements of a scene with other hair.
 fn measured_with(
     hair: &Choice,
     plan: &Plan,

@@ -25,7 +25,7 @@ pub(super) struct Gain {
 }
 
 impl Gain {
-    /// How many times as large an error is in `runs` as in `best`.
+    /// Ratio of the error of `runs` to that of `best`.
     pub(super) fn new(runs: &Runs, best: &Runs, measure: Measure, with_time: bool) -> Self {
         let is_below = runs.is_below_reference(measure) || best.is_below_reference(measure);
         Self {
@@ -70,7 +70,7 @@ impl Gain {
     }
 }
 
-/// How many times as large an error times time is with a sampler as with the last, at the count that pictures show.
+/// Ratio of error times time with a sampler to that with the last, at the count that pictures show.
 pub(super) fn gain(measured: &Measured, sampler: &BySampler, measure: Measure) -> Gain {
     let shown = measured.shown();
     let best = measured.samplers.last().unwrap_or(sampler);
@@ -244,7 +244,7 @@ pub(super) fn sentence(measured: &Measured) -> String {
     format!("{} {numbers}", answer(measured))
 }
 
-/// How many rays see a light.
+/// Share of rays that reach a light.
 pub(super) fn visible(measured: &Measured) -> String {
     format!(
         "{:.0} % of the rays towards lights reach them.",

@@ -10,7 +10,7 @@ use super::bytes::Bytes;
 use super::raw::{Raw, RawStrand};
 use super::{Problem, Wrong};
 
-/// What distinguishes the formats: bytes of a vertex, and centimetres per unit.
+/// Differences between the formats: bytes of a vertex, and centimetres per unit.
 #[derive(Clone, Copy)]
 pub(super) struct Layout {
     stride: u64,

@@ -12,7 +12,7 @@ use super::raw::{Raw, RawStrand};
 use super::{Problem, Wrong};
 
 const HEADER: u64 = 128;
-/// Where the header has the default thickness.
+/// Offset of the default thickness in the header.
 const THICKNESS_AT: u64 = 20;
 const SEGMENTS: u32 = 1;
 const POINTS: u32 = 2;

@@ -60,7 +60,7 @@ pub enum Problem {
     },
     /// A number of things is out of its range.
     Count {
-        /// Of what, and its range.
+        /// Quantity and its range.
         expected: &'static str,
         /// Number in the file.
         got: u32,
@@ -83,14 +83,14 @@ pub enum Problem {
     Length {
         /// According to the header.
         expected: u64,
-        /// Of the file.
+        /// Length of the file.
         got: u64,
     },
     /// A section begins inside the header.
     Section {
         /// Bytes of the header.
         header: u64,
-        /// Where it begins.
+        /// Offset at which the section begins.
         got: u64,
     },
     /// A coordinate is not finite, or too far away.
@@ -109,7 +109,7 @@ pub enum Problem {
     Strand {
         /// The strand, from 0.
         strand: u32,
-        /// Where its vertices would end.
+        /// Offset at which its vertices would end.
         end: u64,
         /// Bytes of the file.
         got: u64,

@@ -24,7 +24,7 @@ pub fn write_hair(path: &Path, strands: &Strands, to: impl Write) -> io::Result<
     }
 }
 
-/// How many nodes each strand has.
+/// Number of nodes of each strand.
 fn counts(strands: &Strands) -> impl Iterator<Item = usize> {
     (0..)
         .take(strands.strands())

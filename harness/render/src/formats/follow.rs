@@ -4,7 +4,7 @@ use crate::lights::uniform_direction;
 use glam::Vec3;
 use hairis_instruments::sequence::{Independent, XiSource as _};
 
-/// How many strands are added beside each, and how far away.
+/// Number of strands added beside each, and their distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Follow {
     /// Strands beside each strand of the file.

@@ -14,7 +14,7 @@ use glam::Vec3;
 use std::io::{self, Write};
 
 const SIGNATURE: &[u8] = b"BINARY_HAIR";
-/// Where nodes begin.
+/// Offset of the first node.
 const HEADER: u64 = 15;
 
 pub(super) fn is_binary(bytes: Bytes<'_>) -> bool {

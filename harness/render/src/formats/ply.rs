@@ -300,7 +300,7 @@ struct Source<'a> {
     bytes: Bytes<'a>,
     encoding: Encoding,
     at: u64,
-    /// What is left of a line of text.
+    /// Rest of a line of text.
     line: std::vec::IntoIter<&'a [u8]>,
 }
 

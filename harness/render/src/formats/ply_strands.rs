@@ -53,7 +53,7 @@ const IDS: [&str; 6] = [
     "strand_index",
 ];
 
-/// What joins nodes.
+/// Rule that joins nodes to strands.
 #[derive(Clone, Copy)]
 enum Join {
     /// Nodes in order; a column has their number, less this.
@@ -221,7 +221,7 @@ pub(super) fn parse(bytes: Bytes<'_>, wants_radii: bool) -> Result<Raw<'_>, Wron
 /// Strands as they are joined.
 #[derive(Default)]
 struct Joined {
-    /// Where each strand begins and the last ends, in the order of nodes.
+    /// First node of each strand and the end of the last, in the order of nodes.
     firsts: Vec<u32>,
     /// The order of nodes, if it is not that of the file.
     order: Vec<u32>,
@@ -282,7 +282,7 @@ impl Joined {
         Ok(())
     }
 
-    /// Where strands begin and the last ends, and the order of nodes if it is not the file's.
+    /// Returns the first node of each strand and the end of the last, and the order of nodes if it is not the file's.
     fn finish(
         mut self,
         limit: u64,

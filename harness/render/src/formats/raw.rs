@@ -24,11 +24,11 @@ pub(super) struct Raw<'a> {
     /// Centimetres per unit, if nothing else is said.
     pub(super) scale: f32,
     pub(super) strands: Box<dyn Iterator<Item = RawStrand<'a>> + 'a>,
-    /// How many strands there are.
+    /// Number of strands.
     pub(super) count: usize,
-    /// How many nodes they have in all.
+    /// Number of nodes of all strands.
     pub(super) nodes: u64,
-    /// Where the file has radii, if it has any that are wanted.
+    /// Offset of the radii in the file, if it has any that are wanted.
     pub(super) radii: Option<u64>,
     /// Lines for the log.
     pub(super) remarks: Vec<String>,
@@ -42,7 +42,7 @@ pub(super) struct RawStrand<'a> {
     pub(super) nodes: Box<dyn Iterator<Item = (Vec3, f32)> + 'a>,
 }
 
-/// What there is to say of the strands of a file.
+/// Counts of unusual strands in a file.
 #[derive(Default)]
 struct Seen {
     nodes: usize,

@@ -72,7 +72,7 @@ pub struct Groom {
     pub length_spread: f32,
     /// Radius at the root, in centimetres.
     pub radius: f32,
-    /// How much of the radius is lost at the tip: `radius (1 - taper s^3)`.
+    /// Share of the radius that is lost at the tip: `radius (1 - taper s^3)`.
     pub taper: f32,
     /// Number of clumps.
     pub clumps: usize,

@@ -51,7 +51,7 @@ impl Mesh {
         })
     }
 
-    /// How many triangles there are.
+    /// Number of triangles.
     #[must_use]
     pub fn triangles(&self) -> usize {
         self.triangles.len()

@@ -7,7 +7,7 @@ use glam::Vec3;
 pub(crate) enum Basis {
     /// Uniform cubic B-spline with doubled ends: smooth to the second derivative, near its nodes.
     BSpline,
-    /// The same with ends pinned to the first and the last node, as USD's curves of this name have
+    /// B-spline with ends pinned to the first and the last node, as USD's curves of this name have
     /// it.
     PinnedBSpline,
     /// Centripetal Catmull-Rom spline: through its nodes, with a continuous direction.
@@ -31,7 +31,7 @@ impl<'a> Spline<'a> {
         (nodes.len() >= 2).then_some(Self { nodes, basis })
     }
 
-    /// How many spans it has.
+    /// Number of spans.
     pub(crate) fn spans(&self) -> usize {
         self.nodes.len() - 1
     }
@@ -82,7 +82,7 @@ fn slope(before: Vec3, node: Vec3, after: Vec3) -> Vec3 {
 pub struct Flattening {
     /// Distance of the curve from the segment, in radii.
     pub radii: f32,
-    /// The same in centimetres: the smaller holds.
+    /// Distance in centimetres: the smaller of both bounds holds.
     pub centimetres: f32,
     /// By how much the curve may turn along a segment, in rad.
     pub turn: f32,
@@ -102,7 +102,7 @@ impl Default for Flattening {
 }
 
 impl Flattening {
-    /// The same, with no more halvings than this.
+    /// Limits the number of halvings.
     pub(crate) fn at_most(self, halvings: i32) -> Self {
         Self {
             halvings: self.halvings.min(halvings),

@@ -49,19 +49,19 @@ impl Strands {
         Builder::default()
     }
 
-    /// How many strands there are.
+    /// Number of strands.
     #[must_use]
     pub fn strands(&self) -> usize {
         self.first.len() - 1
     }
 
-    /// How many segments there are.
+    /// Number of segments.
     #[must_use]
     pub fn segments(&self) -> usize {
         self.nodes.len() - self.strands()
     }
 
-    /// How many nodes there are: one more a strand than segments.
+    /// Number of nodes, one more per strand than segments.
     #[must_use]
     pub fn nodes(&self) -> usize {
         self.nodes.len()
@@ -233,19 +233,19 @@ impl Builder {
         a.distance(b) < SHORTEST
     }
 
-    /// How many strands there are so far.
+    /// Number of strands so far.
     #[must_use]
     pub fn strands(&self) -> usize {
         self.last.len()
     }
 
-    /// How many nodes lay on the node before them.
+    /// Number of nodes that lay on the node before them.
     #[must_use]
     pub fn dropped_nodes(&self) -> usize {
         self.dropped_nodes
     }
 
-    /// How many strands had less than two nodes.
+    /// Number of strands with less than two nodes.
     #[must_use]
     pub fn dropped_strands(&self) -> usize {
         self.dropped_strands
@@ -315,7 +315,7 @@ pub enum GeometryError {
     },
     /// A number of things of a groom was out of its range.
     Count {
-        /// Of what.
+        /// Name of the things that are counted.
         name: &'static str,
         /// Number given.
         value: usize,

@@ -95,7 +95,7 @@ impl Rectangle {
         }
     }
 
-    /// The same rectangle, its normal on the side of a point.
+    /// Turns the normal to the side of a point.
     #[must_use]
     pub fn facing(self, point: Vec3) -> Self {
         let normal = if self.normal.dot(point - self.corner) < 0.0 {

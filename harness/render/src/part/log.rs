@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// Bytes that are written at once.
 const BLOCK: usize = 1 << 23;
-/// How many times as long as it need be a file may grow, before it is written anew.
+/// Largest ratio of a file's length to the length it needs, before it is written anew.
 const MOST: usize = 3;
 
 /// The file of a part, to which tiles are appended. It is written as a whole when the first are

@@ -11,7 +11,7 @@ const LINES: u64 = 1 << 16;
 /// Takes numbers from the front of a file, and keeps their bytes for the digest behind them.
 struct Source<R> {
     input: R,
-    /// What was taken since the last digest.
+    /// Bytes taken since the last digest.
     bytes: Vec<u8>,
     /// Count of the bytes up to the last digest.
     whole: usize,

@@ -48,7 +48,7 @@ pub fn slope(points: &[(f64, f64)]) -> f64 {
     xy / xx
 }
 
-/// Where a curve through points, straight between them in logarithms of both, first falls to a level; `None` if it begins
+/// Abscissa at which a curve through points, straight between them in logarithms of both, first falls to a level; `None` if it begins
 /// below it, or does not reach it.
 #[must_use]
 pub fn crossing(points: &[(f64, f64)], level: f64) -> Option<f64> {
@@ -78,7 +78,7 @@ pub enum Reach {
     Above(u32),
 }
 
-/// Those whose error is not below the reference.
+/// Selects runs whose error is not below that of the reference.
 fn clear(runs: &[Runs], measure: Measure) -> Vec<&Runs> {
     runs.iter()
         .filter(|runs| !runs.is_below_reference(measure))

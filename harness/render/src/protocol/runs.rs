@@ -139,7 +139,8 @@ impl Runs {
         jackknife(self.errors.len(), |kept| self.mean_without(measure, kept))
     }
 
-    /// How many times as large an error, if told to times time, is here as in `other`, with its standard error.
+    /// Returns the ratio of this error to that of `other`, with its standard error. With `with_time`, both errors
+    /// are first multiplied by their render times.
     #[must_use]
     pub fn ratio(&self, other: &Self, measure: Measure, with_time: bool) -> Estimate {
         let by = if with_time {

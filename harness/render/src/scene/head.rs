@@ -1,4 +1,4 @@
-//! What hair grows on.
+//! Heads that hair grows on.
 
 use crate::geometry::{Bounds, Mesh};
 use crate::tree::{MeshTree, Ray};
@@ -47,7 +47,7 @@ impl Head {
         }
     }
 
-    /// How many triangles it has.
+    /// Number of its triangles.
     #[must_use]
     pub fn triangles(&self) -> usize {
         match &self.shape {
@@ -121,7 +121,7 @@ impl Ellipsoid {
         (discriminant >= 0.0 && t > t_min).then_some(t)
     }
 
-    /// Where eight rays from a point meet it before their ends: a mask, bit for bit what
+    /// Tests eight rays from a point before their ends: a mask, bit for bit what
     /// [`meet`](Self::meet) says.
     #[inline]
     #[must_use]

@@ -17,7 +17,7 @@ use hairis_instruments::direction::cosine;
 /// Seed of the camera rays: one for all pictures, so that they differ by their samples alone.
 const CAMERA_SEED: u64 = 0x6361_6d65_7261;
 
-/// Where a camera ray met hair.
+/// Hit of a camera ray on hair.
 struct Point {
     hit: tree::Hit,
     origin: Vec3,

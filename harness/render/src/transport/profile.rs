@@ -1,4 +1,4 @@
-//! Where the time of rendering goes, and how many rays reach a light.
+//! Time of rendering by part of the work, and the share of rays that reach a light.
 
 use core::cell::Cell;
 use core::fmt;
@@ -27,7 +27,7 @@ pub struct Profile {
     seconds: [f64; Self::PHASES.len()],
     /// Rays towards a light.
     towards: u64,
-    /// Those that reach it.
+    /// Number of rays that reach it.
     reached: u64,
 }
 
@@ -79,7 +79,7 @@ impl fmt::Display for Profile {
 }
 
 thread_local! {
-    /// When this thread's last lap ended; `None` while nothing is measured.
+    /// End of this thread's last lap; `None` while nothing is measured.
     static LAST: Cell<Option<Instant>> = const { Cell::new(None) };
     static SUMS: Cell<Profile> =
         const { Cell::new(Profile { seconds: [0.0; Profile::PHASES.len()], towards: 0, reached: 0 }) };

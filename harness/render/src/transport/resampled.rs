@@ -56,7 +56,7 @@ pub(super) fn length(integrator: Integrator) -> usize {
 pub(super) struct Streams {
     light: Even<3>,
     bsdf: Even<3>,
-    /// Where in the table of the sky it reads, as a share of its length.
+    /// Place in the table of the sky that it reads, as a share of its length.
     place: f32,
     /// Numbers that choose, one per pool, along the first axis.
     choice: Even<3>,

@@ -14,13 +14,13 @@ pub(super) struct Block {
     start: [f32x8; 3],
     edge: [f32x8; 3],
     radius: f32x8,
-    /// How much larger the radius is at the other end.
+    /// Growth of the radius towards the other end.
     widening: f32x8,
     number: [u32; 8],
     strand: [u32; 8],
 }
 
-/// What the leaves of a tree hold.
+/// Content of the leaves of a tree.
 pub(super) trait Leaf {
     /// A hit of one of them.
     type Hit;
@@ -94,7 +94,7 @@ impl Block {
 impl Leaf for Block {
     type Hit = Hit;
 
-    /// Where the ray passes nearer to an axis than the radius there, before `limit`: lanes as bits, distances, and places
+    /// Finds segments whose axis the ray passes nearer than the radius there, before `limit`: lanes as bits, distances, and places
     /// along the segments.
     #[inline(always)]
     fn meet<L: Lanes<Stored = f32x8>>(&self, ray: &Spread<L>, limit: f32) -> (u32, [f32x8; 2]) {

@@ -6,11 +6,11 @@ use hairis::simd::Lanes;
 /// A ray: hits are at distances between 0 and `t_max`, both excluded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts.
+    /// Start of the ray.
     pub origin: Vec3,
-    /// Where it goes, unit.
+    /// Unit direction of the ray.
     pub direction: Vec3,
-    /// Where it ends; infinity for a ray that does not.
+    /// End of the ray as a distance; infinity for an unbounded ray.
     pub t_max: f32,
     /// The strand that it leaves.
     pub skip: Option<Skip>,
@@ -55,7 +55,7 @@ impl Skip {
     }
 }
 
-/// Where a ray meets a segment.
+/// Intersection of a ray with a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Distance along the ray to the place nearest to the axis.
@@ -64,7 +64,7 @@ pub struct Hit {
     pub segment: u32,
     /// Its strand.
     pub strand: u32,
-    /// Where along the segment: 0 at the end of the root, 1 at that of the tip.
+    /// Place along the segment: 0 at the end of the root, 1 at that of the tip.
     pub s: f32,
     /// Offset across the fibre in radii, in `[-1, 1]`: positive on the side of the axis (root to tip) cross the ray's
     /// direction. It is `hairis::Hit::h`.

@@ -1,4 +1,4 @@
-//! Where to divide a set of segments: the binned surface area heuristic.
+//! Division of a set of segments: the binned surface area heuristic.
 
 use crate::geometry::Bounds;
 use glam::Vec3;

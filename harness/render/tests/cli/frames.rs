@@ -1,4 +1,4 @@
-//! Where the pixels of a file lie in the picture.
+//! Frames: the place of a file's pixels in the picture.
 
 use super::{channels, render, succeed};
 use exr::math::Vec2;

@@ -1,4 +1,4 @@
-//! What files in use have, and is read with a remark.
+//! Peculiarities of files in use that are read with a remark.
 
 use super::{STRAIGHT, hair, read, remarks, tfx, with_f32, with_u32};
 use glam::Vec3;

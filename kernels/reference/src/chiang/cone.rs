@@ -7,7 +7,7 @@ use crate::Real;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cone<T> {
     variance: T,
-    /// Of theta', the cosine at least 0.
+    /// Sine and cosine of theta', the cosine at least 0.
     sin: T,
     cos: T,
 }

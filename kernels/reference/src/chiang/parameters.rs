@@ -27,17 +27,17 @@ impl Selection {
     }
 }
 
-/// What the formulas compute of the parameters, in either precision.
+/// Formulas of the parameters, in either precision.
 pub trait ChiangFormulas<T: Real>: Sized {
-    /// The same fibre with the absorption of melanin: see [`ChiangDesc::with_melanin`].
+    /// Sets the absorption of melanin: see [`ChiangDesc::with_melanin`].
     #[must_use]
     fn with_melanin(self, eumelanin: T, pheomelanin: T) -> Self;
 
-    /// The same fibre with an artist's melanin: see [`ChiangDesc::with_melanin_amount`].
+    /// Sets the absorption of an artist's melanin: see [`ChiangDesc::with_melanin_amount`].
     #[must_use]
     fn with_melanin_amount(self, amount: T, redness: T) -> Self;
 
-    /// The same fibre with the absorption of a colour: see [`ChiangDesc::with_color`].
+    /// Sets the absorption of a colour: see [`ChiangDesc::with_color`].
     #[must_use]
     fn with_color(self, color: [T; 3]) -> Self;
 

@@ -148,7 +148,7 @@ impl<T: Real> MatchedReference<T> {
         this
     }
 
-    /// The same with lobes chosen by their shares of each channel.
+    /// Selects lobes by their shares of each channel.
     #[inline]
     #[must_use]
     pub fn by_channel(self) -> Self {
@@ -202,7 +202,7 @@ impl<T: Real> MatchedReference<T> {
         (T::from_f64(0.5) * (theta_i + self.book.theta_o) - p.alpha[i]) / p.beta[i]
     }
 
-    /// Where W is largest: `ln W` is concave, as W is at most 4.
+    /// Maximum of W: `ln W` is concave, as W is at most 4.
     fn mode(&self) -> T {
         let number = T::from_f64;
         let (mut lo, mut hi) = (number(-0.5) * T::PI, number(0.5) * T::PI);

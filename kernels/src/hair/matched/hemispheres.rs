@@ -7,7 +7,7 @@ use wide::f32x8;
 
 /// Numbers of lobes below the normal plane and above it: `K` of these are those of R, TT and TRT.
 pub(super) trait Hemispheres<L, const K: usize>: Lanes {
-    /// The same for all lobes, in both hemispheres.
+    /// Repeats a number for all lobes, in both hemispheres.
     fn of(x: L) -> Self;
     /// One number each for R, TT and TRT, the same in both hemispheres.
     fn of_lobes(x: [L; 3]) -> [Self; K];

@@ -37,7 +37,7 @@ crate::simd::lane_struct! {
         /// In each band the integral of a lobe's M exceeds `slope` times that of `M W` from the
         /// nearer pole by this much. Above the middle it is the negative integral.
         pub(in crate::hair) offset: [[C; 4]; N],
-        /// The same in the middle, with the integral of `M W` from the upper pole.
+        /// Offsets in the middle band, with the integral of `M W` from the upper pole.
         pub(in crate::hair) offset_above: [C; 4],
         /// Integral of `M W` from the lower pole up to a point in the middle band.
         pub(in crate::hair) below: [C; 4],
@@ -49,7 +49,7 @@ crate::simd::lane_struct! {
         pub(in crate::hair) scale: C,
         /// Probability of choosing each lobe.
         pub(in crate::hair) selection: [C; 4],
-        /// Where the next lobe begins in `xi_lobe`.
+        /// Start of the next lobe in `xi_lobe`.
         pub(in crate::hair) bounds: [C; 3],
         /// Integral of the azimuth's bell over one side.
         pub(in crate::hair) azimuth_mass: [C; 2],

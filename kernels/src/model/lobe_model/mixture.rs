@@ -8,9 +8,9 @@ crate::simd::lane_struct! {
     pub(crate) struct Mixture {
         /// Probability of each lobe.
         pub(super) selection: [C; 4],
-        /// Where the next lobe begins in `xi[0]`.
+        /// Start of the next lobe in `xi[0]`.
         pub(super) bounds: [C; 3],
-        /// Where each lobe begins in `xi[0]`, from 0 and from 1: the sums of the lobes before it, and of those from it on,
+        /// Start of each lobe in `xi[0]`, from 0 and from 1: the sums of the lobes before it, and of those from it on,
         /// negative.
         pub(super) start: [C; 4],
         /// As `start`, from 1.

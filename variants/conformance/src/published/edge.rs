@@ -92,7 +92,7 @@ pub fn ends_of_xi_give_sound_samples_of_every_lobe(tested: &Tested) {
     );
 }
 
-/// Where R and TRT-g vanish, what is left of them is a difference of rounded numbers, and nothing else has their colours.
+/// On the seam R and TRT-g vanish: what is left of them is a difference of rounded numbers, and nothing else has their colours.
 pub fn nothing_is_negative_on_the_seam(tested: &Tested) {
     let black = [0.0; 3];
     let colours = HairDesc {

@@ -6,25 +6,25 @@ pub struct Rows {
     /// S and density against the reference, relative, further than 1e-3 rad from the axis; then those of a lobe alone: on the
     /// efficiency grid and the presets.
     pub grid: [f64; 4],
-    /// The same, every width 0.5 degrees.
+    /// Bound for lobes that are all 0.5 degrees wide.
     pub narrow: [f64; 4],
-    /// The same, every width 60 degrees.
+    /// Bound for lobes that are all 60 degrees wide.
     pub wide: [f64; 4],
     /// The sum of the lobes against the whole, relative.
     pub lobe_sum: f64,
     /// Samples against the reference at the direction they return: S, density, weight, relative, off the seam and the axis.
     pub grid_sample: [f64; 3],
-    /// The same, every width 0.5 degrees.
+    /// Bound for lobes that are all 0.5 degrees wide.
     pub narrow_sample: [f64; 3],
-    /// The same, every width 60 degrees.
+    /// Bound for lobes that are all 60 degrees wide.
     pub wide_sample: [f64; 3],
     /// Length of a sampled direction, off 1.
     pub sample_length: f64,
     /// The cdf of the drawn angles against the numbers they were drawn with: theta, phi.
     pub grid_cdf: [f64; 2],
-    /// The same, every width 0.5 degrees.
+    /// Bound for lobes that are all 0.5 degrees wide.
     pub narrow_cdf: [f64; 2],
-    /// The same, every width 60 degrees.
+    /// Bound for lobes that are all 60 degrees wide.
     pub wide_cdf: [f64; 2],
     /// A level that fuses against one lane that does not, wide lobes off the seam and the axis: S, density, direction.
     pub levels: [f64; 3],
@@ -51,7 +51,7 @@ pub struct Rows {
     /// Samples at the ends of the uniform numbers, widths of a degree and more, against the reference at the direction they
     /// return: S, density, weight off the seam, density next to it; matched samplers.
     pub tail_sample: [f64; 4],
-    /// The same off the seam, where no lobe has its centre on the sphere.
+    /// Bound off the seam, where no lobe has its centre on the sphere.
     pub off_sphere_sample: [f64; 3],
     /// With 5, 9 and 25 bands, under constant light over the grid: V at most, its gain over the published sampler at least,
     /// as a geometric mean and anywhere.

@@ -11,7 +11,7 @@ const COVERED: f32 = 0.625;
 const CLEARANCE: f32 = 1.02;
 /// Strands that are combed lie in layers up to this part of the ellipsoid above that.
 const DEPTH: f32 = 0.06;
-/// Where combed strands are parted, in x on the unit sphere: they fall to either side.
+/// Parting of combed strands, as x on the unit sphere: strands fall to either side.
 const PARTING: f32 = 0.25;
 /// How far guides are longer than strands.
 const GUIDE_LENGTH: f32 = 1.05;

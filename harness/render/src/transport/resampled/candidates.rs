@@ -22,7 +22,7 @@ pub(in crate::transport) struct Candidates {
     weighed: [[f32; MOST]; 4],
     cell: [u8; MOST],
     len: usize,
-    /// Those with a weight, cell by cell: their places, contributions and weights.
+    /// Candidates with a weight, cell by cell: their places, contributions and weights.
     order: [u8; MOST],
     ordered: [[f32; MOST]; 4],
 }
