@@ -1,0 +1,33 @@
+//! Guide: how to shade hair with this crate, chapter by chapter.
+//!
+//! | chapter | question |
+//! |---|---|
+//! | [`first_hair`] | How does a renderer shade a hit on a hair? |
+//! | [`choosing`] | Which model and which sampler suit a scene? |
+//! | [`embedding`] | Which call suits which host, and what does the library ask of it? |
+//! | [`energy`] | How does hair return no more light than it receives? |
+//! | [`resampling`] | How does one ray serve many candidate directions? |
+//! | [`cauchy`] | Is the all-Cauchy model worth its change of look? |
+//! | [`writing_a_model`] | How does a scattering model of one's own get lanes, dispatch and tests? |
+//! | [`errata`] | Which statements of the paper do not hold? |
+//!
+//! The examples are tests of the package.
+
+/// Chapters as Markdown files: each module is one of them.
+macro_rules! chapters {
+    ($($chapter:ident = $file:literal;)*) => { $(
+        #[doc = include_str!($file)]
+        pub mod $chapter {}
+    )* };
+}
+
+chapters! {
+    first_hair = "guide/first_hair.md";
+    choosing = "guide/choosing.md";
+    embedding = "guide/embedding.md";
+    energy = "guide/energy.md";
+    resampling = "guide/resampling.md";
+    cauchy = "guide/cauchy.md";
+    writing_a_model = "guide/writing_a_model.md";
+    errata = "../ERRATA.md";
+}
