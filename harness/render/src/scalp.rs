@@ -22,6 +22,11 @@ const STRAY: f64 = 3.0;
 /// their spread: it decides where roots cover too little of a head to show its shape, and moves the
 /// axes of a covered one by less than a hundredth.
 const PRIOR: f64 = 1e-3;
+/// Logarithm of the largest factor between the proportions of a scalp and those of a head. Strips of
+/// roots, as of a mohawk, fit long and narrow ellipsoids better than any head ...
+const DISPROPORTION: f64 = 0.3;
+/// ... which weigh this much beyond the limit.
+const BARRIER: f64 = 10.0;
 /// Distances in units of the spread count in full up to this, and farther ones less and less: some
 /// roots are not on the scalp. One after the other, as the fit comes nearer.
 const OUTLIERS: [f64; 2] = [1.0, 0.2];
@@ -199,6 +204,7 @@ impl Surface {
         };
         places.iter().map(of).sum::<f64>() / places.len() as f64
             + PRIOR * self.disproportion(proportions).length_squared()
+            + BARRIER * excess(self.disproportion(proportions)).length_squared()
     }
 
     /// Differences of the logarithms from those of a head of any size.
@@ -278,9 +284,18 @@ impl Surface {
             row[3..].fill(-1.0 / 3.0);
             row[3 + axis] += 1.0;
             add(row, off, PRIOR);
+            let off = excess(DVec3::splat(off)).x;
+            if off != 0.0 {
+                add(row, off, BARRIER);
+            }
         }
         (matrix, slope)
     }
+}
+
+/// Parts of differences of logarithms beyond the limit.
+fn excess(off: DVec3) -> DVec3 {
+    off - off.clamp(DVec3::splat(-DISPROPORTION), DVec3::splat(DISPROPORTION))
 }
 
 /// Solves six linear equations by elimination with pivots.
