@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Promise: prose reads as sentences. Counts words per sentence and digits outside tables and code, and doc comments that
-begin with a headless pronoun; fails where a count is outside its bound. `prose.py --list` prints the headless comments,
+begin with a headless pronoun, and follows links between files; fails where a count is outside its bound or a link is dead. `prose.py --list` prints the headless comments,
 `prose.py --sentences FILE` the sentences of one file, shortest first."""
 
+import os
 import re
 import statistics
 import subprocess
@@ -64,6 +65,29 @@ def count(texts):
     return len(found), statistics.median(words or [0]), 100 * digits / max(1, sum(words))
 
 
+def slug(heading):
+    """Anchor of a heading, as GitHub makes it."""
+    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).strip().lower()
+    return re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
+
+
+def dead_links(names):
+    """Relative links of Markdown files whose file or heading does not exist."""
+    for name in names:
+        text = open(name, encoding="utf-8").read()
+        for target in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"(?ms)^```.*?^```", "", text)):
+            if re.match(r"[a-z]+://|crate\b", target):
+                continue
+            path, _, anchor = target.partition("#")
+            file = os.path.normpath(os.path.join(os.path.dirname(name), path)) if path else name
+            if not os.path.exists(file):
+                yield name, target
+            elif anchor and file.endswith(".md"):
+                headings = re.findall(r"(?m)^#+ (.*)$", open(file, encoding="utf-8").read())
+                if anchor not in map(slug, headings):
+                    yield name, target
+
+
 def main():
     guide = tracked("kernels/src/guide/*.md")
     readmes = [f for f in tracked("*.md") if f not in guide and not f.endswith(("CHANGELOG.md", "ERRATA.md", "records/README.md"))]
@@ -93,7 +117,10 @@ def main():
         failed |= bad
         print(f"{name:<28}{total:>10}{median:>14.0f}{digits:>22.1f}{'  FAIL' if bad else ''}")
     print(f"{len(headless)} of {len(docs)} doc comments begin without a noun or a verb{'  FAIL' if headless else ''}")
-    return int(failed or bool(headless))
+    dead = list(dead_links(tracked("*.md")))
+    for name, target in dead:
+        print(f"{name}: the link {target} leads nowhere  FAIL")
+    return int(failed or bool(headless) or bool(dead))
 
 
 sys.exit(main())
