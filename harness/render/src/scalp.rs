@@ -38,8 +38,9 @@ const BELOW: f64 = 0.02;
 const CLEARANCE: f64 = 0.995;
 /// Surfaces that are farther from roots than this part of their radius are no scalp ...
 const WORST: f64 = 0.15;
-/// ... nor are those whose half axes exceed this many times the spread: the roots are on a plane.
-const FLATTEST: f64 = 10.0;
+/// ... nor are those whose half axes exceed this many times the spread of the roots, which is about 1.3
+/// times for a covered head: the roots are on a plane, or go down a back.
+const FLATTEST: f64 = 4.0;
 
 /// A fitted ellipsoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,7 +116,7 @@ pub fn fit(strands: &Strands) -> Result<Fit, String> {
         ));
     }
     if radii.max_element() > FLATTEST {
-        return refused("got roots on a plane");
+        return refused("got roots on a plane, or on a small part of a surface");
     }
     let shrink = part(&depths, BELOW).min(1.0) * CLEARANCE * size;
     let length = radii.element_product().cbrt() * size;

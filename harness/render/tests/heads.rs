@@ -339,10 +339,19 @@ fn what_is_no_scalp_is_refused() {
         .iter()
         .map(|p| Vec3::new(p.x, 0.0, p.z))
         .collect::<Vec<_>>();
+    // A mane: from the forehead down a back, 70 cm long.
+    let mane = (0..500_u16)
+        .map(|k| {
+            let along = f32::from(k) / 500.0;
+            let across = f32::from(k % 7) - 3.0;
+            Vec3::new(across, 70.0 - 70.0 * along, 12.0 * (3.0 * along).sin())
+        })
+        .collect::<Vec<_>>();
     let one = vec![Vec3::ONE; 20];
     for (places, what) in [
         (cloud, "median distance"),
         (plane, "plane"),
+        (mane, "small part"),
         (one, "one place"),
     ] {
         let problem = fit(&roots(places)).expect_err(what);
