@@ -40,7 +40,7 @@ const CLEARANCE: f64 = 0.995;
 const WORST: f64 = 0.15;
 /// ... nor are those whose half axes exceed this many times the spread of the roots, which is about 1.3
 /// times for a covered head: the roots are on a plane, or go down a back.
-const FLATTEST: f64 = 4.0;
+const FLATTEST: f64 = 2.5;
 
 /// A fitted ellipsoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
