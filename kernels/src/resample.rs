@@ -24,11 +24,11 @@
 //! - Radiance that is NaN or below 0 counts as 0. Contributions and weights above 1e30 count as 1e30, so that no sum overflows:
 //!   infinite radiance is such a contribution.
 
-use crate::columns::{LengthError, WI, XI, check_columns};
+use crate::columns::{LengthError, VALUE_PDF, WI, XI, check_columns};
 use crate::handle::kernels::{Proposals, ProposalsOf, WeighOf, Weighs};
 use crate::model::Model;
-use crate::simd::Lanes;
 use crate::simd::dispatch::clean_upper_halves;
+use crate::simd::{Lanes, Level, Row, Vec3x};
 use crate::{Bsdf, Bsdf8, Eval8, Vec3x8};
 use wide::f32x8;
 
@@ -186,6 +186,19 @@ const CANDIDATE: [&str; 7] = [
     "radiance.b",
     "pdf_light",
 ];
+const EVALUATED: [&str; 11] = [
+    VALUE_PDF[0],
+    VALUE_PDF[1],
+    VALUE_PDF[2],
+    VALUE_PDF[3],
+    CANDIDATE[0],
+    CANDIDATE[1],
+    CANDIDATE[2],
+    CANDIDATE[3],
+    CANDIDATE[4],
+    CANDIDATE[5],
+    CANDIDATE[6],
+];
 const WEIGHT: [&str; 4] = [
     "contribution.r",
     "contribution.g",
@@ -214,6 +227,74 @@ impl Weighed8 {
             weight,
         }
     }
+}
+
+/// Columns of weights from columns of evaluations.
+#[derive(Clone, Copy)]
+struct WeighEvals(Weighing);
+
+impl Row<11, 4> for WeighEvals {
+    #[inline(always)]
+    fn row<L: Lanes>(self, [vr, vg, vb, pdf, x, y, z, r, g, b, light]: [L; 11]) -> [L; 4] {
+        let cos_theta_i = Vec3x::new(x, y, z).cos_theta();
+        self.0
+            .weigh([vr, vg, vb], pdf, cos_theta_i, [r, g, b], light)
+    }
+}
+
+/// Contributions and weights of candidates whose values and densities the host has: `evals` are red, green, blue and the density.
+///
+/// The bits are those of [`Bsdf::weigh_columns`] if the values are those of [`Bsdf::eval_columns`] on the same level: a host of
+/// many models needs this once, and no kernel of weights per model.
+///
+/// # Errors
+///
+/// If the columns differ in length; nothing is written then.
+///
+/// ```
+/// use hairis::columns::EvalColumns;
+/// use hairis::resample::{CandidateColumns, Counts, Partition, WeightColumns, weigh_evals};
+/// use hairis::{Gaussian, HairParams, Material, Published};
+/// let bsdf = Material::new(&Published(Gaussian), &HairParams::red()).prepare(glam::Vec3::Y);
+/// let wi = [[0.1; 11], [0.7; 11], [0.7; 11]];
+/// let candidates = CandidateColumns {
+///     wi: [&wi[0], &wi[1], &wi[2]],
+///     radiance: [&[0.5; 11], &[2.0; 11], &[0.0; 11]],
+///     pdf_light: &[0.3; 11],
+/// };
+/// let (counts, partition) = (Counts { bsdf: 3, light: 5 }, Partition::Balance);
+/// let [mut by_model, mut by_evals, mut evals] = [[[0.0; 11]; 4]; 3];
+/// let [r, g, b, weight] = by_model.each_mut().map(|column| &mut column[..]);
+/// bsdf.weigh_columns(candidates, counts, partition, WeightColumns { contribution: [r, g, b], weight })?;
+/// let [r, g, b, pdf] = evals.each_mut().map(|column| &mut column[..]);
+/// bsdf.eval_columns(candidates.wi, EvalColumns { value: Some([r, g, b]), pdf: Some(pdf) })?;
+/// let evals = evals.each_ref().map(|column| &column[..]);
+/// let [r, g, b, weight] = by_evals.each_mut().map(|column| &mut column[..]);
+/// let out = WeightColumns { contribution: [r, g, b], weight };
+/// weigh_evals(bsdf.level(), evals, candidates, counts, partition, out)?;
+/// assert!(by_model == by_evals && by_model[3][10] > 0.0);
+/// # Ok::<(), hairis::columns::LengthError>(())
+/// ```
+#[inline]
+pub fn weigh_evals(
+    level: Level,
+    evals: [&[f32]; 4],
+    candidates: CandidateColumns<'_>,
+    counts: Counts,
+    partition: Partition,
+    out: WeightColumns<'_>,
+) -> Result<(), LengthError> {
+    clean_upper_halves();
+    let CandidateColumns {
+        wi: [u, v, w],
+        radiance: [r, g, b],
+        pdf_light,
+    } = candidates;
+    let ([vr, vg, vb, pdf], [fr, fg, fb]) = (evals, out.contribution);
+    let inputs = [vr, vg, vb, pdf, u, v, w, r, g, b, pdf_light];
+    let columns = check_columns(&EVALUATED, inputs, &WEIGHT, [fr, fg, fb, out.weight])?;
+    level.run_columns(WeighEvals(Weighing::new(counts, partition)), &columns);
+    Ok(())
 }
 
 impl<M: Model> Bsdf<M> {

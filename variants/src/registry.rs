@@ -33,6 +33,8 @@ pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
     const MODEL: Self;
     /// Whether it reads [`Hit::h`](hairis::Hit::h).
     const NEAR_FIELD: bool = false;
+    /// Whether it may return more light than arrives, so that [`Conserving`](hairis::Conserving) changes it.
+    const GAINS_ENERGY: bool = false;
     /// Name of the lobes' colours in reports; `None` if they are not reported.
     const COLORS: Option<&'static str> = None;
 }
@@ -141,7 +143,7 @@ macro_rules! models {
 
             /// Named parameters.
             #[inline]
-            pub fn presets(self) -> impl Iterator<Item = (&'static str, Values)> {
+            pub fn presets(self) -> impl Iterator<Item = (&'static str, Values)> + Clone {
                 let preset = move |index: usize| match self {
                     $(Self::$variant => <<$model as Model>::Params as Parameters>::PRESETS
                         .get(index)
