@@ -1,0 +1,417 @@
+//! Models by name, parameters by field, materials: the calls that refuse with a sentence.
+
+use crate::handles::{assert_fits, material, model_of};
+use crate::layout::{
+    ABI_VERSION, ARGUMENT, ENERGY_CONSERVING, ENERGY_RAW, ENERGY_SCALED, Error, FieldInfo,
+    KIND_NUMBER, KIND_NUMBERS, KIND_RGB, KIND_WORD, ModelInfo, NAME, NUMBERS, OK, Params,
+    RawMaterial, VALUE,
+};
+use crate::models::{self, visit};
+use crate::text::{Fault, List, array, copy, refuse, string};
+use core::ffi::c_char;
+use hairis::simd::Level;
+use hairis::{Material, ParamError};
+use hairis_variants::{FieldError, Kind, ModelId, Parameters, Registered, Values};
+
+const _: () = assert!(
+    NUMBERS == Values::MOST,
+    "the header has room for all numbers"
+);
+
+/// A count as C has it: none is above 32.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "a few fields, words and lobes"
+)]
+const fn count(number: usize) -> u32 {
+    number as u32
+}
+
+/// `hairis_abi_version`.
+#[unsafe(no_mangle)]
+pub extern "C" fn hairis_abi_version() -> u32 {
+    ABI_VERSION
+}
+
+/// `hairis_version`.
+#[unsafe(no_mangle)]
+pub extern "C" fn hairis_version() -> *const c_char {
+    concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
+}
+
+/// `hairis_level_name`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hairis_level_name(to: *mut c_char, size: usize) -> usize {
+    // SAFETY: the caller's promise.
+    unsafe { copy(Level::detect().name(), to, size) }
+}
+
+/// `hairis_model_count`.
+#[unsafe(no_mangle)]
+pub extern "C" fn hairis_model_count() -> u32 {
+    count(models::all().count())
+}
+
+/// `hairis_model_describe`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hairis_model_describe(model: u32, to: *mut ModelInfo) -> i32 {
+    let (Some(id), false) = (models::at(model), to.is_null()) else {
+        return ARGUMENT;
+    };
+    let (choice, word) = id.choice().unwrap_or_default();
+    let mut lobe_names = [[0; 16]; 4];
+    for (to, name) in lobe_names.iter_mut().zip(id.lobes()) {
+        *to = array(name);
+    }
+    let info = ModelInfo {
+        name: array(id.name()),
+        choice: array(choice),
+        word: array(word),
+        lobe_names,
+        lobes: count(id.lobes().len()),
+        fields: count(id.fields().len()),
+        presets: count(id.presets().count()),
+        near_field: id.is_near_field().into(),
+        is_default: id.is_default().into(),
+    };
+    // SAFETY: the caller's promise.
+    unsafe { to.write(info) };
+    OK
+}
+
+/// `hairis_field_describe`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hairis_field_describe(model: u32, field: u32, to: *mut FieldInfo) -> i32 {
+    let fields = models::at(model).map_or(&[][..], ModelId::fields);
+    let index = usize::try_from(field).unwrap_or(usize::MAX);
+    let (Some(field), false) = (fields.get(index), to.is_null()) else {
+        return ARGUMENT;
+    };
+    let (kind, labels) = match field.kind {
+        Kind::Number => (KIND_NUMBER, &[][..]),
+        Kind::Numbers(labels) => (KIND_NUMBERS, labels),
+        Kind::Rgb => (KIND_RGB, &[][..]),
+        Kind::Word(words) => (KIND_WORD, words),
+    };
+    let mut label = [[0; 16]; 4];
+    for (to, name) in label.iter_mut().zip(labels) {
+        *to = array(name);
+    }
+    let [least, most] = field.range().unwrap_or_default();
+    let info = FieldInfo {
+        name: array(field.name),
+        instead_of: array(field.instead_of.unwrap_or_default()),
+        kind,
+        width: count(field.kind.width()),
+        first: count(fields[..index].iter().map(|field| field.kind.width()).sum()),
+        optional: field.optional.into(),
+        least,
+        most,
+        labels: count(labels.len()),
+        label,
+        unit: array(field.unit),
+        doc: array(field.doc),
+    };
+    // SAFETY: the caller's promise.
+    unsafe { to.write(info) };
+    OK
+}
+
+/// `hairis_preset_name`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hairis_preset_name(
+    model: u32,
+    preset: u32,
+    to: *mut c_char,
+    size: usize,
+) -> usize {
+    let index = usize::try_from(preset).unwrap_or(usize::MAX);
+    let name = models::at(model).and_then(|id| Some(id.presets().nth(index)?.0));
+    // SAFETY: the caller's promise.
+    name.map_or(0, |name| unsafe { copy(name, to, size) })
+}
+
+/// The parameters of values.
+pub(crate) fn params_of(id: ModelId, values: &Values) -> Params {
+    let mut params = Params {
+        model: models::index(id),
+        given: 0,
+        numbers: [0.0; NUMBERS],
+    };
+    let mut rest = &mut params.numbers[..];
+    for index in 0..values.fields().len() {
+        let numbers = values.numbers_at(index);
+        let (to, after) = rest.split_at_mut(numbers.len());
+        to.copy_from_slice(numbers);
+        rest = after;
+        params.given |= u32::from(values.has_at(index)) << index;
+    }
+    params
+}
+
+/// The model and the values of parameters, or the refusal of those that were not initialised.
+pub(crate) unsafe fn values_of(
+    params: *const Params,
+    error: *mut Error,
+) -> Result<(ModelId, Values), i32> {
+    // SAFETY: the caller's promise: null, or parameters.
+    let params = unsafe { params.as_ref() };
+    let known = params.and_then(|params| Some((params, models::at(params.model)?)));
+    let Some((params, id)) = known.filter(|(params, _)| params.given != 0) else {
+        let message = &"the parameters must be made by hairis_params_init";
+        // SAFETY: the caller's promise.
+        return Err(unsafe { refuse(error, ARGUMENT, &Fault::of("params"), message) });
+    };
+    let mut values = Values::none(id.fields());
+    let mut rest = &params.numbers[..];
+    for (index, field) in id.fields().iter().enumerate() {
+        let (numbers, after) = rest.split_at(field.kind.width());
+        rest = after;
+        if params.given >> index & 1 == 1 {
+            // The index and the count are those of the field.
+            let _ = values.set_at(index, numbers);
+        }
+    }
+    Ok((id, values))
+}
+
+/// `hairis_params_init`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hairis_params_init(
+    to: *mut Params,
+    model: *const c_char,
+    choice: *const c_char,
+    preset: *const c_char,
+    error: *mut Error,
+) -> i32 {
+    // SAFETY: the caller's promise.
+    let (model, word, preset) = unsafe { (string(model), string(choice), string(preset)) };
+    // SAFETY: the caller's promise.
+    let refuse = |code, field, message: &dyn core::fmt::Display| unsafe {
+        refuse(error, code, &Fault::of(field), message)
+    };
+    let (Some(name), false) = (model, to.is_null()) else {
+        return refuse(ARGUMENT, "model", &"to and model must not be NULL");
+    };
+    let Some(first) = models::find(name, None) else {
+        let names = List(
+            models::all()
+                .filter(|id| id.is_default())
+                .map(ModelId::name),
+        );
+        return refuse(
+            NAME,
+            "model",
+            &format_args!("model must be one of {names}, got \"{name}\""),
+        );
+    };
+    let Some(id) = models::find(name, word) else {
+        let of_name = models::all().filter(|id| id.name() == first.name());
+        let words = List(of_name.filter_map(|id| Some(id.choice()?.1)));
+        let (field, word) = (
+            first.choice().map_or("choice", |(field, _)| field),
+            word.unwrap_or_default(),
+        );
+        return match first.choice() {
+            Some(_) => refuse(
+                NAME,
+                field,
+                &format_args!("{field} must be one of {words}, got \"{word}\""),
+            ),
+            None => refuse(
+                NAME,
+                field,
+                &format_args!("choice must be NULL for {name}, got \"{word}\""),
+            ),
+        };
+    };
+    let values = match preset {
+        None => Some(id.defaults()),
+        Some(preset) => id
+            .presets()
+            .find(|(one, _)| *one == preset)
+            .map(|(_, values)| values),
+    };
+    let Some(values) = values else {
+        let (names, preset) = (
+            List(id.presets().map(|(name, _)| name)),
+            preset.unwrap_or_default(),
+        );
+        return refuse(
+            NAME,
+            "preset",
+            &format_args!("preset must be one of {names}, got \"{preset}\""),
+        );
+    };
+    // SAFETY: the caller's promise.
+    unsafe { to.write(params_of(id, &values)) };
+    OK
+}
+
+/// Sets a field by `set`, and writes the parameters unless that refuses.
+unsafe fn set(
+    params: *mut Params,
+    field: *const c_char,
+    error: *mut Error,
+    set: impl Fn(&mut Values, &str) -> Result<(), FieldError>,
+) -> i32 {
+    // SAFETY: the caller's promise.
+    let (name, read) = unsafe { (string(field).unwrap_or_default(), values_of(params, error)) };
+    let (id, mut values) = match read {
+        Ok(read) => read,
+        Err(code) => return code,
+    };
+    // SAFETY: the caller's promise.
+    let refuse = |code, message: &dyn core::fmt::Display| unsafe {
+        refuse(error, code, &Fault::of(name), message)
+    };
+    match set(&mut values, name) {
+        Ok(()) => {
+            // SAFETY: the caller's promise.
+            unsafe { params.write(params_of(id, &values)) };
+            OK
+        }
+        Err(FieldError::Name) => {
+            let names = List(id.fields().iter().map(|field| field.name));
+            refuse(
+                NAME,
+                &format_args!("field must be one of {names}, got \"{name}\""),
+            )
+        }
+        Err(FieldError::Count(width)) => {
+            refuse(VALUE, &format_args!("{name} must be {width} numbers"))
+        }
+        Err(FieldError::Word([])) => refuse(
+            VALUE,
+            &format_args!("{name} must be numbers: use hairis_params_set"),
+        ),
+        Err(FieldError::Word(words)) => {
+            let words = List(words.iter().copied());
+            refuse(NAME, &format_args!("{name} must be one of {words}"))
+        }
+        Err(error) => refuse(VALUE, &format_args!("{name}: {error}")),
+    }
+}
+
+/// `hairis_params_set`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hairis_params_set(
+    params: *mut Params,
+    field: *const c_char,
+    numbers: *const f32,
+    count: usize,
+    error: *mut Error,
+) -> i32 {
+    if numbers.is_null() || count > NUMBERS {
+        let message = &format_args!("numbers must be at most {NUMBERS} and not NULL, got {count}");
+        // SAFETY: the caller's promise.
+        return unsafe { refuse(error, ARGUMENT, &Fault::of("numbers"), message) };
+    }
+    // SAFETY: the caller's promise.
+    unsafe {
+        let numbers = core::slice::from_raw_parts(numbers, count);
+        set(params, field, error, |values, name| {
+            match values.index(name) {
+                Some(index) if matches!(values.fields()[index].kind, Kind::Word(_)) => {
+                    let Kind::Word(words) = values.fields()[index].kind else {
+                        return Err(FieldError::Name);
+                    };
+                    Err(FieldError::Word(words))
+                }
+                _ => values.set(name, numbers),
+            }
+        })
+    }
+}
+
+/// `hairis_params_set_word`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hairis_params_set_word(
+    params: *mut Params,
+    field: *const c_char,
+    word: *const c_char,
+    error: *mut Error,
+) -> i32 {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let word = string(word).unwrap_or_default();
+        set(params, field, error, |values, name| {
+            values.set_word(name, word)
+        })
+    }
+}
+
+/// Refuses a value out of its range.
+pub(crate) unsafe fn refuse_value(error: *mut Error, fault: &ParamError) -> i32 {
+    let place = Fault {
+        field: fault.field(),
+        number: fault.number(),
+        value: fault.value(),
+    };
+    // SAFETY: the caller's promise.
+    unsafe { refuse(error, VALUE, &place, fault) }
+}
+
+/// The material of values: the only place that reads the energy which the host asks for, but for the head's.
+fn build<M: Registered>(values: &Values, energy: u32) -> Result<Material<M>, ParamError> {
+    let params: M::Params = Parameters::from_values(values)?;
+    let raw = Material::new(&M::MODEL, &params);
+    if energy != ENERGY_SCALED {
+        return Ok(raw);
+    }
+    let scaled = params.scaled(raw.conserving_scale())?;
+    Ok(Material::new(&M::MODEL, &scaled))
+}
+
+/// `hairis_material_init`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hairis_material_init(
+    to: *mut RawMaterial,
+    params: *const Params,
+    energy: u32,
+    error: *mut Error,
+) -> i32 {
+    // SAFETY: the caller's promise.
+    let (id, values) = match unsafe { values_of(params, error) } {
+        Ok(read) => read,
+        Err(code) => return code,
+    };
+    if to.is_null() || !matches!(energy, ENERGY_RAW | ENERGY_CONSERVING | ENERGY_SCALED) {
+        let message = &format_args!("energy must be 0, 1 or 2, and to not NULL; got {energy}");
+        // SAFETY: the caller's promise.
+        return unsafe { refuse(error, ARGUMENT, &Fault::of("energy"), message) };
+    }
+    let values = &raw const values;
+    let made = visit!(id, M, (to: *mut RawMaterial, values: *const Values, energy: u32) -> Result<(), ParamError>, {
+        assert_fits::<M>();
+        // SAFETY: the values outlive the call.
+        let material = build::<M>(unsafe { &*values }, energy)?;
+        let energy = if M::GAINS_ENERGY { energy } else { ENERGY_RAW };
+        // SAFETY: the caller's promise; the handle fits.
+        unsafe {
+            to.write_bytes(0, 1);
+            (&raw mut (*to).head).write([models::tag(ModelId::of::<M>()), energy, 0, 0]);
+            (&raw mut (*to).body).cast::<Material<M>>().write(material);
+        }
+        Ok(())
+    });
+    match made {
+        // SAFETY: the caller's promise.
+        Some(Err(fault)) => unsafe { refuse_value(error, &fault) },
+        _ => OK,
+    }
+}
+
+/// `hairis_material_max_albedo`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hairis_material_max_albedo(from: *const RawMaterial) -> f32 {
+    // SAFETY: the caller's promise.
+    let id = unsafe { model_of(from) };
+    let max = id.and_then(|id| {
+        visit!(id, M, (from: *const RawMaterial) -> f32, {
+            // SAFETY: the tag is the model's.
+            unsafe { material::<M>(from) }.max_albedo()
+        })
+    });
+    max.unwrap_or(0.0)
+}

@@ -1,0 +1,238 @@
+/* What the library refuses: the status, the place, the sentence, and that nothing but the error is written. */
+#include "hairis.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static int failed, checked;
+
+/* A buffer that must keep its bytes. */
+static unsigned char guarded[16384];
+static void fill(void) { memset(guarded, 0xa5, sizeof guarded); }
+static int is_untouched(void) {
+  for (size_t i = 0; i < sizeof guarded; ++i)
+    if (guarded[i] != 0xa5) return 0;
+  return 1;
+}
+static hairis_error error;
+
+static void refused(hairis_status got, hairis_status code, const char *field, int number, const char *words) {
+  ++checked;
+  if (got == code && error.code == code && strcmp(error.field, field) == 0 && error.number == number &&
+      strstr(error.message, words)) {
+    memset(&error, 0x5a, sizeof error);
+    return;
+  }
+  ++failed;
+  fprintf(stderr, "FAIL status %d, wanted %d; field \"%.32s\", wanted \"%s\"; number %d; \"%.212s\", wanted \"%s\"\n", (int)got,
+          (int)code, error.field, field, (int)error.number, error.message, words);
+}
+static void want(int condition, const char *what) {
+  ++checked;
+  if (!condition) ++failed, fprintf(stderr, "FAIL %s\n", what);
+}
+
+static void setup(void) {
+  hairis_params *to = (hairis_params *)(void *)guarded, params, before;
+  fill();
+  refused(hairis_params_init(to, "hair", NULL, NULL, &error), HAIRIS_NAME, "model", -1,
+          "model must be one of gaussian, cauchy, kajiya-kay, chiang, got \"hair\"");
+  refused(hairis_params_init(to, "\xff\xfe", NULL, NULL, &error), HAIRIS_NAME, "model", -1, "model must be one of");
+  refused(hairis_params_init(to, "gaussian", "best", NULL, &error), HAIRIS_NAME, "sampler", -1, "sampler must be one of published, ");
+  refused(hairis_params_init(to, "kajiya-kay", "best", NULL, &error), HAIRIS_NAME, "choice", -1, "choice must be NULL for kajiya-kay");
+  refused(hairis_params_init(to, "chiang", NULL, "green", &error), HAIRIS_NAME, "preset", -1, "preset must be one of ");
+  refused(hairis_params_init(to, NULL, NULL, NULL, &error), HAIRIS_ARGUMENT, "model", -1, "must not be NULL");
+  refused(hairis_params_init(NULL, "chiang", NULL, NULL, &error), HAIRIS_ARGUMENT, "model", -1, "must not be NULL");
+  want(hairis_params_init(to, "hair", NULL, NULL, NULL) == HAIRIS_NAME, "a refusal without an error to write");
+  char longer[600];
+  memset(longer, 'x', sizeof longer);
+  longer[sizeof longer - 1] = 0;
+  refused(hairis_params_init(to, longer, NULL, NULL, &error), HAIRIS_NAME, "model", -1, "got \"xxx");
+  want(is_untouched(), "hairis_params_init writes what it refuses");
+
+  if (hairis_params_init(&params, "chiang", NULL, NULL, &error)) want(0, "the default of chiang");
+  before = params;
+  const float numbers[40] = {0};
+  refused(hairis_params_set(&params, "beta", numbers, 1, &error), HAIRIS_NAME, "beta", -1, "field must be one of beta_m, beta_n, ");
+  refused(hairis_params_set(&params, NULL, numbers, 1, &error), HAIRIS_NAME, "", -1, "field must be one of ");
+  refused(hairis_params_set(&params, "sigma_a", numbers, 2, &error), HAIRIS_VALUE, "sigma_a", -1, "sigma_a must be 3 numbers");
+  refused(hairis_params_set(&params, "sigma_a", NULL, 3, &error), HAIRIS_ARGUMENT, "numbers", -1, "not NULL");
+  refused(hairis_params_set(&params, "sigma_a", numbers, 40, &error), HAIRIS_ARGUMENT, "numbers", -1, "at most 32");
+  refused(hairis_params_set(&params, "shifts", numbers, 1, &error), HAIRIS_NAME, "shifts", -1, "shifts must be one of d-eon, small-angle");
+  refused(hairis_params_set_word(&params, "shifts", "none", &error), HAIRIS_NAME, "shifts", -1, "shifts must be one of d-eon, small-angle");
+  refused(hairis_params_set_word(&params, "eta", "glass", &error), HAIRIS_VALUE, "eta", -1, "use hairis_params_set");
+  refused(hairis_params_set_word(&params, "shifts", NULL, &error), HAIRIS_NAME, "shifts", -1, "one of");
+  hairis_artist artist;
+  hairis_artist_init(&artist);
+  refused(hairis_params_set_artist(&params, &artist, &error), HAIRIS_ARGUMENT, "model", -1, "gaussian or cauchy");
+  want(memcmp(&params, &before, sizeof params) == 0, "parameters change where a field is refused");
+
+  if (hairis_params_init(&params, "gaussian", "matched", "brown", &error)) want(0, "a preset");
+  before = params;
+  artist.secondary.width_deg = 400;
+  refused(hairis_params_set_artist(&params, &artist, &error), HAIRIS_VALUE, "secondary.width_deg", -1,
+          "secondary.width_deg must be an angle in [0.01, 180] degrees, got 400");
+  refused(hairis_params_set_artist(&params, NULL, &error), HAIRIS_ARGUMENT, "model", -1, "not NULL");
+  want(memcmp(&params, &before, sizeof params) == 0, "parameters change where an artist's control is refused");
+
+  hairis_material *material = (hairis_material *)(void *)guarded;
+  hairis_params none;
+  memset(&none, 0, sizeof none);
+  fill();
+  refused(hairis_material_init(material, &none, HAIRIS_ENERGY_RAW, &error), HAIRIS_ARGUMENT, "params", -1, "hairis_params_init");
+  none.model = 1000, none.given = 1;
+  refused(hairis_material_init(material, &none, HAIRIS_ENERGY_RAW, &error), HAIRIS_ARGUMENT, "params", -1, "hairis_params_init");
+  refused(hairis_material_init(material, NULL, HAIRIS_ENERGY_RAW, &error), HAIRIS_ARGUMENT, "params", -1, "hairis_params_init");
+  refused(hairis_material_init(material, &params, 7, &error), HAIRIS_ARGUMENT, "energy", -1, "energy must be 0, 1 or 2");
+  refused(hairis_material_init(NULL, &params, 1, &error), HAIRIS_ARGUMENT, "energy", -1, "not NULL");
+  const float widths[3] = {0.1f, 0, 0.2f}, red[3] = {0, 1, -INFINITY};
+  hairis_params_set(&params, "beta", widths, 3, &error);
+  refused(hairis_material_init(material, &params, 1, &error), HAIRIS_VALUE, "beta", 1, "beta[1] must be a width in [1e-4, pi] rad, got 0");
+  hairis_params_set(&before, "i_r", red, 3, &error);
+  hairis_material_init(material, &before, 2, &error);
+  want(isinf(error.value), "the value at fault");
+  refused(HAIRIS_VALUE, HAIRIS_VALUE, "i_r", 2, "i_r[2] must be finite and at least 0, got -inf");
+  want(is_untouched(), "hairis_material_init writes what it refuses");
+  want(hairis_model_describe(1000, (hairis_model_info *)(void *)guarded) == HAIRIS_ARGUMENT, "a model that there is not");
+  want(hairis_field_describe(0, 1000, (hairis_field_info *)(void *)guarded) == HAIRIS_ARGUMENT, "a field that there is not");
+  want(hairis_preset_name(0, 1000, (char *)guarded, 9) == 0, "a preset that there is not");
+  want(is_untouched(), "a description of nothing is written");
+}
+
+static void columns(void) {
+  static hairis_material materials[3]; /* the last is empty */
+  hairis_params params;
+  for (int m = 0; m < 2; ++m) {
+    hairis_params_init(&params, m ? "chiang" : "gaussian", NULL, NULL, &error);
+    hairis_material_init(&materials[m], &params, HAIRIS_ENERGY_CONSERVING, &error);
+  }
+  hairis_bsdf bsdf, empty;
+  hairis_prepare(&bsdf, &materials[0], 0.6f, 0.8f, 0, 0);
+  hairis_prepare(&empty, &materials[2], 0.6f, 0.8f, 0, 0);
+  enum { N = 40 };
+  static float in[N];
+  for (int i = 0; i < N; ++i) in[i] = 0.5f;
+  uint32_t index[N] = {0};
+  float *out = (float *)(void *)guarded;
+  const float *wi[3] = {in, in, in}, *missing[3] = {in, NULL, in};
+  hairis_evals evals = {{out, out + N, out + 2 * N}, out + 3 * N}, partial = {{out, NULL, NULL}, NULL};
+  hairis_samples samples = {{out, out + N, out + 2 * N}, {NULL, NULL, NULL}, NULL, {NULL, NULL, NULL}, NULL};
+  hairis_samples partial_samples = {{NULL, NULL, NULL}, {NULL, out, NULL}, NULL, {NULL, NULL, NULL}, NULL};
+  hairis_hits hits = {{in, in, in}, NULL, index}, no_wo = {{in, in, NULL}, NULL, NULL};
+  hairis_candidates candidates = {{in, in, in}, {in, in, in}, in}, no_light = {{in, in, in}, {in, in, in}, NULL};
+  hairis_weights weights = {{out, out + N, out + 2 * N}, out + 3 * N}, no_weight = {{out, out + N, out + 2 * N}, NULL};
+  hairis_counts counts = {1, 1, HAIRIS_PARTITION_ALL}, no_partition = {1, 1, 3};
+  const size_t huge = (size_t)-1 / 2;
+  fill();
+#define REFUSED(call) want((call) == HAIRIS_ARGUMENT, #call)
+  REFUSED(hairis_eval_columns(&empty, N, wi, &evals));
+  REFUSED(hairis_eval_columns(&bsdf, N, missing, &evals));
+  REFUSED(hairis_eval_columns(&bsdf, N, NULL, &evals));
+  REFUSED(hairis_eval_columns(&bsdf, N, wi, NULL));
+  REFUSED(hairis_eval_columns(NULL, N, wi, &evals));
+  REFUSED(hairis_eval_columns(&bsdf, huge, wi, &evals));
+  REFUSED(hairis_sample_columns(&empty, N, wi, &samples));
+  REFUSED(hairis_sample_columns(&bsdf, N, missing, &samples));
+  REFUSED(hairis_sample_columns(&bsdf, N, wi, NULL));
+  REFUSED(hairis_sample_columns(NULL, N, wi, &samples));
+  REFUSED(hairis_sample_columns(&bsdf, huge, wi, &samples));
+  REFUSED(hairis_weigh_columns(&empty, N, &candidates, counts, &weights));
+  REFUSED(hairis_weigh_columns(&bsdf, N, &no_light, counts, &weights));
+  REFUSED(hairis_weigh_columns(&bsdf, N, &candidates, no_partition, &weights));
+  REFUSED(hairis_weigh_columns(&bsdf, N, &candidates, counts, &no_weight));
+  REFUSED(hairis_weigh_columns(&bsdf, N, &candidates, counts, NULL));
+  REFUSED(hairis_eval_hits(materials, 0, N, &hits, wi, &evals));
+  REFUSED(hairis_eval_hits(NULL, 3, N, &hits, wi, &evals));
+  REFUSED(hairis_eval_hits(materials, 3, N, NULL, wi, &evals));
+  REFUSED(hairis_eval_hits(materials, 3, N, &hits, NULL, &evals));
+  REFUSED(hairis_eval_hits(materials, 3, N, &hits, missing, &evals));
+  REFUSED(hairis_eval_hits(materials, 3, N, &hits, wi, &partial));
+  REFUSED(hairis_eval_hits(materials, 3, N, &no_wo, wi, &evals));
+  REFUSED(hairis_eval_hits(&materials[2], 1, N, &hits, wi, &evals));
+  REFUSED(hairis_eval_hits(materials, 3, huge, &hits, wi, &evals));
+  REFUSED(hairis_sample_hits(materials, 3, N, &hits, wi, &partial_samples));
+  REFUSED(hairis_sample_hits(materials, 3, N, &no_wo, wi, &samples));
+  index[N - 1] = 2; /* an empty material, at the last hit */
+  REFUSED(hairis_eval_hits(materials, 3, N, &hits, wi, &evals));
+  REFUSED(hairis_sample_hits(materials, 3, N, &hits, wi, &samples));
+  index[N - 1] = 3; /* behind the last material */
+  REFUSED(hairis_eval_hits(materials, 3, N, &hits, wi, &evals));
+  REFUSED(hairis_sample_hits(materials, 3, N, &hits, wi, &samples));
+  hits.index = NULL;
+  REFUSED(hairis_sample_hits(&materials[2], 1, N, &hits, wi, &samples));
+  want(is_untouched(), "columns that are refused are written");
+
+  /* n = 0 succeeds whatever the pointers. */
+  want(hairis_eval_columns(NULL, 0, NULL, NULL) == HAIRIS_OK && hairis_sample_columns(NULL, 0, NULL, NULL) == HAIRIS_OK &&
+           hairis_weigh_columns(NULL, 0, NULL, counts, NULL) == HAIRIS_OK && hairis_choose(NULL, 0, 3, 0, NULL) == 0 &&
+           hairis_eval_hits(NULL, 0, 0, NULL, NULL, NULL) == HAIRIS_OK && hairis_sample_hits(NULL, 0, 0, NULL, NULL, NULL) == HAIRIS_OK,
+       "no rows");
+
+  /* Empty handles are black. */
+  hairis_eval_result eval = hairis_eval_pdf(&empty, 0, 1, 0);
+  hairis_sample_result sample = hairis_sample(&empty, 0.5f, 0.5f, 0.5f);
+  hairis_lobe_result lobes[4];
+  float albedo[4][3];
+  hairis_lobes(&empty, 0, 1, 0, lobes);
+  hairis_albedo(&empty, albedo);
+  hairis_restrict(&empty, 1);
+  want(eval.pdf == 0 && eval.value[0] == 0 && sample.lobe == -1 && sample.pdf == 0 && lobes[0].pdf == 0 && albedo[0][0] == 0 &&
+           hairis_material_max_albedo(&materials[2]) == 0,
+       "empty handles are black");
+  hairis_bsdf zero;
+  memset(&zero, 0, sizeof zero);
+  want(hairis_eval_pdf(&zero, 0, 1, 0).pdf == 0, "a BSDF that is all zero is black");
+}
+
+/* Names, lengths and ranges of descriptions, and fields that take the place of others. */
+static void descriptions(void) {
+  char name[32];
+  want(hairis_abi_version() == HAIRIS_ABI_VERSION && strlen(hairis_version()) > 4, "versions");
+  size_t length = hairis_level_name(name, sizeof name), cut = hairis_level_name(name, 3);
+  want(length == cut && strlen(name) == 2 && hairis_level_name(NULL, 0) == length, "a name that does not fit");
+  for (uint32_t m = 0; m < hairis_model_count(); ++m) {
+    hairis_model_info info, found_info;
+    hairis_params params;
+    want(hairis_model_describe(m, &info) == HAIRIS_OK, "a model");
+    want(hairis_params_init(&params, info.name, info.word[0] ? info.word : NULL, NULL, &error) == HAIRIS_OK, info.name);
+    want(params.model == m, "the index of a model found by its names");
+    want(hairis_model_describe(params.model, &found_info) == HAIRIS_OK && memcmp(&info, &found_info, sizeof info) == 0, "descriptions");
+    uint32_t numbers = 0;
+    for (uint32_t f = 0; f < info.fields; ++f) {
+      hairis_field_info field;
+      want(hairis_field_describe(m, f, &field) == HAIRIS_OK && field.first == numbers, "a field");
+      want(strlen(field.doc) > 8 && field.doc[strlen(field.doc) - 1] == '.', field.name);
+      want(field.kind == HAIRIS_KIND_WORD ? field.labels > 1 : field.least < field.most, "a range, or words");
+      want(field.labels <= 4, "room for all labels");
+      for (uint32_t w = 0; w < field.labels; ++w) want(strlen(field.label[w]) > 0 && strlen(field.label[w]) < 15, "a label");
+      if (field.kind == HAIRIS_KIND_WORD)
+        want(hairis_params_set_word(&params, field.name, field.label[field.labels - 1], &error) == HAIRIS_OK &&
+                 params.numbers[field.first] == (float)(field.labels - 1),
+             "a word");
+      numbers += field.width;
+    }
+    want(numbers <= HAIRIS_NUMBERS, "room for all numbers");
+    for (uint32_t p = 0; p < info.presets; ++p) {
+      want(hairis_preset_name(m, p, name, sizeof name) == strlen(name), "a preset's name");
+      want(hairis_params_init(&params, info.name, info.word[0] ? info.word : NULL, name, &error) == HAIRIS_OK, name);
+    }
+  }
+  hairis_params params;
+  const float color[3] = {0.5f, 0.3f, 0.1f};
+  hairis_params_init(&params, "chiang", NULL, NULL, &error);
+  uint32_t given = params.given;
+  want(hairis_params_set(&params, "color", color, 3, &error) == HAIRIS_OK && params.given != given, "a colour in place of absorption");
+  uint32_t bits = 0, before = 0;
+  for (uint32_t f = 0; f < 32; ++f) bits += params.given >> f & 1, before += given >> f & 1;
+  want(bits == before, "one field of a group");
+}
+
+int main(void) {
+  memset(&error, 0x5a, sizeof error);
+  setup();
+  columns();
+  descriptions();
+  printf("%d refusals and descriptions, %d failed\n", checked, failed);
+  return failed != 0;
+}
