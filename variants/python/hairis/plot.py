@@ -1,0 +1,102 @@
+"""Plots of lobes with matplotlib: `pip install hairis[plot]`.
+
+>>> import matplotlib; matplotlib.use("agg")
+>>> import hairis.plot
+>>> bsdf = hairis.Material("gaussian", "brown", sampler="matched").prepare((0.5, 0.75**0.5, 0.0))
+>>> axes = hairis.plot.polar(bsdf)
+>>> axes = hairis.plot.sphere(bsdf)
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._hairis import Bsdf
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+LUMINANCE = np.float32([0.2126, 0.7152, 0.0722])
+
+
+def _directions(theta: NDArray[Any], phi: NDArray[Any]) -> NDArray[np.float32]:
+    """Return unit vectors of shape (3, N) in the fibre's frame."""
+    cos = np.cos(theta)
+    columns = np.stack([np.sin(theta), cos * np.cos(phi), cos * np.sin(phi)]).reshape(3, -1)
+    return np.ascontiguousarray(columns, np.float32)
+
+
+def _axes(axes: Axes | None, **arguments: Any) -> Axes:
+    if axes is not None:
+        return axes
+    import matplotlib.pyplot as plt
+
+    made: Axes = plt.figure().add_subplot(**arguments)
+    return made
+
+
+def polar(bsdf: Bsdf, theta: float | None = None, *, count: int = 1024, axes: Axes | None = None) -> Axes:
+    """Draw each lobe and their sum as a polar plot over the azimuth of `wi`.
+
+    Parameters
+    ----------
+    bsdf : Bsdf
+        A material at a hit.
+    theta : float, optional
+        Inclination of `wi`, rad, in (-pi/2, pi/2); without it, the one at which the BSDF is largest.
+    count : int
+        Number of azimuths.
+    axes : matplotlib Axes, optional
+        Polar axes to draw in; new ones without it.
+
+    Returns
+    -------
+    matplotlib Axes
+        The radius is the luminance of S times the cosine, per steradian; the angle is the azimuth of `wi`, rad.
+    """
+    axes = _axes(axes, projection="polar")
+    phi = np.linspace(-np.pi, np.pi, count)
+    if theta is None:
+        grid, azimuths = np.meshgrid(np.linspace(-1.5, 1.5, 301), np.linspace(-np.pi, np.pi, 64), indexing="ij")
+        values = LUMINANCE @ bsdf.eval_columns(_directions(grid, azimuths))["value"]
+        theta = float(grid.ravel()[int(np.argmax(values * np.cos(grid.ravel())))])
+    wi = _directions(np.full_like(phi, theta), phi)
+    for name in bsdf.albedo():
+        one = LUMINANCE @ bsdf.with_lobes([name]).eval_columns(wi)["value"] * np.cos(theta)
+        if one.max() > 0:
+            axes.plot(phi, one, label=name, linewidth=1)
+    axes.plot(phi, LUMINANCE @ bsdf.eval_columns(wi)["value"] * np.cos(theta), "k", label="sum", linewidth=0.6)
+    axes.set_title(f"theta_i = {np.degrees(theta):.1f} degrees")
+    axes.legend(loc="lower left", fontsize="small")
+    return axes
+
+
+def sphere(bsdf: Bsdf, *, resolution: int = 256, axes: Axes | None = None) -> Axes:
+    """Draw the BSDF as a map over the sphere: azimuth across, inclination up, on a logarithmic scale.
+
+    Parameters
+    ----------
+    bsdf : Bsdf
+        A material at a hit.
+    resolution : int
+        Rows of the map; it has twice as many columns.
+    axes : matplotlib Axes, optional
+        Axes to draw in; new ones without it.
+
+    Returns
+    -------
+    matplotlib Axes
+        The colour is log10 of the luminance of S, per steradian, over six decades; angles are degrees.
+    """
+    axes = _axes(axes)
+    theta = (np.arange(resolution) + 0.5) / resolution * np.pi - np.pi / 2
+    phi = (np.arange(2 * resolution) + 0.5) / (2 * resolution) * 2 * np.pi - np.pi
+    values = LUMINANCE @ bsdf.eval_columns(_directions(*np.meshgrid(theta, phi, indexing="ij")))["value"]
+    shown = np.log10(np.maximum(values, max(float(values.max()), 1e-30) * 1e-6)).reshape(resolution, -1)
+    image = axes.imshow(shown, origin="lower", extent=(-180, 180, -90, 90), cmap="magma")
+    axes.set(xlabel="phi_i, degrees", ylabel="theta_i, degrees")
+    axes.figure.colorbar(image, ax=axes, label="log10 S", shrink=0.6)
+    return axes

@@ -1,0 +1,183 @@
+//! Columns of NumPy: borrowed, never copied.
+
+use numpy::{
+    PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
+    PyUntypedArrayMethods,
+};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Columns of an evaluation: names, and rows of each.
+pub(crate) const EVALS: [(&str, usize); 2] = [("value", 3), ("pdf", 1)];
+/// Columns of samples.
+pub(crate) const SAMPLES: [(&str, usize); 5] = [
+    ("wi", 3),
+    ("value", 3),
+    ("pdf", 1),
+    ("weight", 3),
+    ("lobe", 1),
+];
+
+fn shape(rows: usize, n: Option<usize>) -> String {
+    let n = n.map_or_else(|| "N".to_owned(), |n| n.to_string());
+    if rows == 3 {
+        format!("(3, {n})")
+    } else {
+        format!("({n},)")
+    }
+}
+
+/// The exception of an array that is not what it must be.
+fn refused(name: &str, rows: usize, n: Option<usize>, got: &Bound<'_, PyAny>) -> PyErr {
+    let is_contiguous =
+        || -> PyResult<bool> { got.getattr("flags")?.getattr("c_contiguous")?.extract() };
+    let what = match (got.getattr("dtype"), got.getattr("shape"), is_contiguous()) {
+        (Ok(dtype), Ok(shape), Ok(contiguous)) => {
+            let order = if contiguous { "" } else { ", not C-contiguous" };
+            format!("{dtype} of shape {shape}{order}")
+        }
+        _ => got.get_type().to_string(),
+    };
+    PyTypeError::new_err(format!(
+        "{name} must be float32 of shape {}, C-contiguous; got {what}",
+        shape(rows, n)
+    ))
+}
+
+/// The array, if it is one of float32 with this shape, C-contiguous.
+fn cast<'a, 'py>(
+    name: &str,
+    rows: usize,
+    n: Option<usize>,
+    any: &'a Bound<'py, PyAny>,
+) -> PyResult<&'a Bound<'py, PyArrayDyn<f32>>> {
+    let array = any
+        .cast::<PyArrayDyn<f32>>()
+        .map_err(|_| refused(name, rows, n, any))?;
+    let fits = match array.shape() {
+        [three, len] => rows == 3 && *three == 3 && n.is_none_or(|n| n == *len),
+        [len] => rows == 1 && n.is_none_or(|n| n == *len),
+        _ => false,
+    };
+    if fits && array.is_c_contiguous() {
+        Ok(array)
+    } else {
+        Err(refused(name, rows, n, any))
+    }
+}
+
+/// The address of each row of a column.
+fn rows_of(start: *const f32, n: usize) -> [*const f32; 3] {
+    [start, start.wrapping_add(n), start.wrapping_add(2 * n)]
+}
+
+/// A column that a call reads.
+pub(crate) struct Input<'py> {
+    array: PyReadonlyArrayDyn<'py, f32>,
+    pub(crate) n: usize,
+}
+
+impl<'py> Input<'py> {
+    /// The column of `rows` rows; of `n` numbers each, if that is known.
+    pub(crate) fn new(
+        name: &str,
+        any: &Bound<'py, PyAny>,
+        rows: usize,
+        n: Option<usize>,
+    ) -> PyResult<Self> {
+        let array = cast(name, rows, n, any)?;
+        let n = array.shape().last().copied().unwrap_or(0);
+        let array = array
+            .try_readonly()
+            .map_err(|error| PyValueError::new_err(format!("{name}: {error}")))?;
+        Ok(Self { array, n })
+    }
+
+    pub(crate) fn rows(&self) -> [*const f32; 3] {
+        rows_of(self.array.data().cast_const(), self.n)
+    }
+}
+
+/// The columns that a call writes.
+pub(crate) struct Outputs<'py> {
+    /// Columns by name, for the caller.
+    pub(crate) dict: Bound<'py, PyDict>,
+    /// Held so that nothing else reads or writes them.
+    _borrowed: Vec<PyReadwriteArrayDyn<'py, f32>>,
+    /// The rows of each column, null where it is left out.
+    pub(crate) rows: Vec<[*mut f32; 3]>,
+}
+
+impl<'py> Outputs<'py> {
+    /// New columns of every name, or those of `out`.
+    pub(crate) fn new(
+        py: Python<'py>,
+        out: Option<&Bound<'py, PyDict>>,
+        columns: &[(&str, usize)],
+        n: usize,
+    ) -> PyResult<Self> {
+        let dict = out.cloned().unwrap_or_else(|| PyDict::new(py));
+        if out.is_none() {
+            for (name, rows) in columns {
+                if *rows == 3 {
+                    dict.set_item(name, PyArray2::<f32>::zeros(py, [3, n], false))?;
+                } else {
+                    dict.set_item(name, PyArray1::<f32>::zeros(py, n, false))?;
+                }
+            }
+        }
+        for key in dict.keys() {
+            let key: String = key.extract()?;
+            if !columns.iter().any(|(name, _)| *name == key) {
+                let names: Vec<_> = columns.iter().map(|(name, _)| *name).collect();
+                let names = names.join(", ");
+                return Err(PyValueError::new_err(format!(
+                    "out must have some of {names}, got \"{key}\""
+                )));
+            }
+        }
+        let (mut borrowed, mut all) = (Vec::new(), Vec::new());
+        for (name, rows) in columns {
+            let Some(any) = dict.get_item(name)? else {
+                all.push([core::ptr::null_mut(); 3]);
+                continue;
+            };
+            let name = format!("out[\"{name}\"]");
+            let array = cast(&name, *rows, Some(n), &any)?;
+            let array = array.try_readwrite().map_err(|_| {
+                PyValueError::new_err(format!(
+                    "{name} must be writeable and share no memory with another column"
+                ))
+            })?;
+            all.push(rows_of(array.data().cast_const(), n).map(<*const f32>::cast_mut));
+            borrowed.push(array);
+        }
+        Ok(Self {
+            dict,
+            _borrowed: borrowed,
+            rows: all,
+        })
+    }
+}
+
+/// A call that may run while other threads run Python.
+pub(crate) struct Detached<F>(pub(crate) F);
+
+// SAFETY: the call's pointers are of arrays that are borrowed, and of frozen objects that are kept, until it returns.
+unsafe impl<F> Send for Detached<F> {}
+
+impl<F: FnOnce() -> i32> Detached<F> {
+    /// Runs the call without Python's lock. What it refuses is checked before.
+    pub(crate) fn run(self, py: Python<'_>) -> PyResult<()> {
+        let call = self;
+        let status = py.detach(move || {
+            let Self(call) = { call };
+            call()
+        });
+        match status {
+            0 => Ok(()),
+            _ => Err(PyValueError::new_err("the arguments were refused")),
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Materials at a hit.
+
+use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES};
+use crate::fields::double;
+use crate::material::{Material, samples};
+use hairis_capi::layout::{Evals, LobeResult, RawBsdf};
+use hairis_capi::{columns, points};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+/// A material at a hit, seen from one direction: made by `Material.prepare`.
+///
+/// Examples
+/// --------
+/// >>> bsdf = hairis.Material("gaussian", "brown", sampler="matched").prepare(wo=(0.6, 0.0, 0.8))
+/// >>> xi = np.random.default_rng(1).random((3, 1000), np.float32)
+/// >>> samples = bsdf.sample_columns(xi)
+/// >>> samples["weight"].shape
+/// (3, 1000)
+#[pyclass(frozen, module = "hairis")]
+pub(crate) struct Bsdf {
+    material: Py<Material>,
+    wo: [f32; 3],
+    h: f32,
+    /// Bit i for a lobe i that is kept.
+    lobes: u32,
+    raw: RawBsdf,
+}
+
+impl Bsdf {
+    pub(crate) fn new(material: Py<Material>, wo: [f32; 3], h: f32) -> Self {
+        let raw = material.get().bsdf(wo, h);
+        Self {
+            material,
+            wo,
+            h,
+            lobes: 0b1111,
+            raw,
+        }
+    }
+
+    /// Names of the lobes that are kept.
+    fn kept(&self) -> Vec<String> {
+        let names = self
+            .material
+            .get()
+            .described()
+            .lobes()
+            .into_iter()
+            .enumerate();
+        names
+            .filter(|(slot, _)| self.lobes >> slot & 1 == 1)
+            .map(|(_, name)| name)
+            .collect()
+    }
+
+    fn is_whole(&self) -> bool {
+        self.kept().len() == self.material.get().described().lobes().len()
+    }
+}
+
+#[pymethods]
+impl Bsdf {
+    /// Directional albedo of each lobe by name: the integral of value times cosine over all directions, linear RGB.
+    ///
+    /// Examples
+    /// --------
+    /// >>> list(hairis.Material("gaussian").prepare((0, 1, 0)).albedo())
+    /// ['r', 'tt', 'trt', 'glint']
+    fn albedo<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let mut lobes = [[0.0; 3]; 4];
+        // SAFETY: the BSDF is prepared.
+        unsafe { points::hairis_albedo(&raw const self.raw, &raw mut lobes) };
+        let by_name = PyDict::new(py);
+        for (name, rgb) in self
+            .material
+            .get()
+            .described()
+            .lobes()
+            .into_iter()
+            .zip(lobes)
+        {
+            by_name.set_item(name, PyTuple::new(py, rgb.map(double))?)?;
+        }
+        Ok(by_name)
+    }
+
+    /// Each lobe's value without its colour, its colour, and its own density at one direction, by name.
+    ///
+    /// Parameters
+    /// ----------
+    /// wi : sequence of 3 floats
+    ///     Towards the light, in the fibre's frame, of unit length.
+    ///
+    /// Examples
+    /// --------
+    /// >>> bsdf = hairis.Material("kajiya-kay").prepare((0, 1, 0))
+    /// >>> value, color, pdf = bsdf.lobes((0, 0, 1))["diffuse"]
+    /// >>> len(color)
+    /// 3
+    fn lobes<'py>(&self, py: Python<'py>, wi: [f32; 3]) -> PyResult<Bound<'py, PyDict>> {
+        let mut lobes = [LobeResult::default(); 4];
+        // SAFETY: the BSDF is prepared.
+        unsafe { points::hairis_lobes(&raw const self.raw, wi[0], wi[1], wi[2], &raw mut lobes) };
+        let by_name = PyDict::new(py);
+        for (name, lobe) in self
+            .material
+            .get()
+            .described()
+            .lobes()
+            .into_iter()
+            .zip(lobes)
+        {
+            let color = PyTuple::new(py, lobe.color.map(double))?;
+            by_name.set_item(name, (double(lobe.value), color, double(lobe.pdf)))?;
+        }
+        Ok(by_name)
+    }
+
+    /// The BSDF with some lobes alone: the others neither scatter nor are sampled.
+    ///
+    /// Examples
+    /// --------
+    /// >>> bsdf = hairis.Material("gaussian").prepare((0, 1, 0)).with_lobes(["r"])
+    /// >>> bsdf.albedo()["tt"]
+    /// (0.0, 0.0, 0.0)
+    fn with_lobes(&self, names: Vec<String>) -> PyResult<Self> {
+        let known = self.material.get().described().lobes();
+        let mut lobes = 0;
+        for name in &names {
+            let Some(slot) = known.iter().position(|one| one == name) else {
+                let known = known.join(", ");
+                return Err(PyValueError::new_err(format!(
+                    "lobes must be some of {known}, got \"{name}\""
+                )));
+            };
+            lobes |= 1 << slot;
+        }
+        let mut raw = self.raw;
+        // SAFETY: the BSDF is prepared.
+        unsafe { points::hairis_restrict(&raw mut raw, lobes) };
+        Python::attach(|py| {
+            let material = self.material.clone_ref(py);
+            Ok(Self {
+                material,
+                lobes: self.lobes & lobes,
+                raw,
+                ..*self
+            })
+        })
+    }
+
+    /// Values and densities of N directions.
+    ///
+    /// Parameters
+    /// ----------
+    /// wi : ndarray, float32, shape (3, N), C-contiguous
+    ///     Directions towards the light, in the fibre's frame, of unit length.
+    /// out : dict, optional
+    ///     Columns to write, some of those below; others are not written.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     "value", shape (3, N): S without the cosine, linear RGB, per steradian. "pdf", shape (N,): density, per steradian. The
+    ///     dict is `out` if that is given.
+    ///
+    /// Examples
+    /// --------
+    /// >>> bsdf = hairis.Material("cauchy", "red").prepare((0, 1, 0))
+    /// >>> out = {"pdf": np.empty(2, np.float32)}
+    /// >>> bsdf.eval_columns(np.eye(3, 2, -1, np.float32), out=out) is out
+    /// True
+    #[pyo3(signature = (wi, *, out=None))]
+    fn eval_columns<'py>(
+        &self,
+        py: Python<'py>,
+        wi: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let wi = Input::new("wi", wi, 3, None)?;
+        let n = wi.n;
+        let outputs = Outputs::new(py, out, &EVALS, n)?;
+        let [value, pdf] = outputs.rows[..] else {
+            unreachable!("two columns")
+        };
+        let (raw, rows, to) = (&raw const self.raw, wi.rows(), Evals { value, pdf: pdf[0] });
+        // SAFETY: the arrays have n numbers in each row, and are borrowed.
+        Detached(move || unsafe {
+            columns::hairis_eval_columns(raw, n, &raw const rows, &raw const to)
+        })
+        .run(py)?;
+        Ok(outputs.dict)
+    }
+
+    /// N samples.
+    ///
+    /// Parameters
+    /// ----------
+    /// xi : ndarray, float32, shape (3, N), C-contiguous
+    ///     Uniform numbers in [0, 1): for the lobe, the inclination and the azimuth.
+    /// out : dict, optional
+    ///     Columns to write, some of those below; others are not written.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     "wi", "value" and "weight", shape (3, N), "pdf" and "lobe", shape (N,): as in `Material.sample_hits`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> xi = np.random.default_rng(1).random((3, 4096), np.float32)
+    /// >>> bsdf = hairis.Material("gaussian", "brown", sampler="matched").prepare((0, 1, 0))
+    /// >>> albedo = sum(lobe[0] for lobe in bsdf.albedo().values())
+    /// >>> bool(abs(bsdf.sample_columns(xi)["weight"][0].mean() / albedo - 1) < 0.05)
+    /// True
+    #[pyo3(signature = (xi, *, out=None))]
+    fn sample_columns<'py>(
+        &self,
+        py: Python<'py>,
+        xi: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let xi = Input::new("xi", xi, 3, None)?;
+        let n = xi.n;
+        let outputs = Outputs::new(py, out, &SAMPLES, n)?;
+        let (raw, rows, to) = (&raw const self.raw, xi.rows(), samples(&outputs));
+        // SAFETY: the arrays have n numbers in each row, and are borrowed.
+        Detached(move || unsafe {
+            columns::hairis_sample_columns(raw, n, &raw const rows, &raw const to)
+        })
+        .run(py)?;
+        Ok(outputs.dict)
+    }
+
+    fn __repr__(&self) -> String {
+        let [u, v, w] = self.wo.map(double);
+        let (material, h) = (self.material.get().__repr__(), double(self.h));
+        let lobes = if self.is_whole() {
+            String::new()
+        } else {
+            format!(".with_lobes({:?})", self.kept())
+        };
+        format!("{material}.prepare(({u:?}, {v:?}, {w:?}), {h:?}){lobes}")
+    }
+
+    /// The call that makes the same BSDF: for pickle and copy.
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let make = py.import("hairis._make")?.getattr("bsdf")?;
+        let lobes = if self.is_whole() {
+            None
+        } else {
+            Some(self.kept())
+        };
+        let arguments = (
+            self.material.clone_ref(py),
+            self.wo.map(double),
+            double(self.h),
+            lobes,
+        );
+        Ok((make, arguments.into_pyobject(py)?))
+    }
+}

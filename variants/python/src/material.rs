@@ -1,0 +1,542 @@
+//! Materials.
+
+use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES};
+use crate::bsdf::Bsdf;
+use crate::fields::{Field, Model, Value, check, double, models_of_library, no_error};
+use core::ffi::CStr;
+use core::fmt::Write;
+use hairis_capi::layout::{
+    ENERGY_CONSERVING, ENERGY_RAW, ENERGY_SCALED, Evals, Hits, KIND_NUMBER, KIND_WORD,
+    MATERIAL_SIZE, Params, RawMaterial, Samples,
+};
+use hairis_capi::{hits, points, setup};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use std::ffi::CString;
+
+const ENERGIES: [(&str, u32); 3] = [
+    ("raw", ENERGY_RAW),
+    ("conserving", ENERGY_CONSERVING),
+    ("scaled", ENERGY_SCALED),
+];
+
+/// Hair: a model with checked parameters.
+///
+/// Parameters
+/// ----------
+/// model : str
+///     "gaussian", "cauchy", "kajiya-kay" or "chiang"; `hairis.models()` lists them with their fields.
+/// preset : str, optional
+///     Values of all fields: "brown", "blond" and so on. Without one, the model's defaults.
+/// energy : {"conserving", "raw", "scaled"}
+///     "conserving" returns no more light than arrives, direction by direction. "raw" is the model as it is. "scaled" is darker,
+///     but stays reciprocal.
+/// **fields
+///     Values in place of the preset's: numbers, sequences of numbers, or words. Angles are radians, colours linear RGB. The field
+///     "sampler" of "gaussian" and "cauchy" and "select" of "chiang" choose how directions are sampled.
+///
+/// Raises
+/// ------
+/// ValueError
+///     A name that there is not, or a value out of its range; the message says which there are.
+///
+/// Examples
+/// --------
+/// >>> hair = hairis.Material("gaussian", "brown", sampler="matched", i_g=0.5)
+/// >>> hair.fields["i_g"]
+/// 0.5
+/// >>> eval(repr(hair)) == hair
+/// True
+/// >>> hairis.Material("gaussian", beta=(0.1, 0.0, 0.2))
+/// Traceback (most recent call last):
+/// ValueError: beta[1] must be a width in [1e-4, pi] rad, got 0
+#[pyclass(frozen, module = "hairis")]
+pub(crate) struct Material {
+    pub(crate) raw: RawMaterial,
+    params: Params,
+    energy: &'static str,
+}
+
+fn c_string(text: &str) -> PyResult<CString> {
+    CString::new(text)
+        .map_err(|_| PyValueError::new_err(format!("names must have no NUL, got {text:?}")))
+}
+
+/// The code of an energy's name.
+fn energy_of(name: &str) -> PyResult<(&'static str, u32)> {
+    let found = ENERGIES.iter().find(|(one, _)| *one == name).copied();
+    found.ok_or_else(|| {
+        PyValueError::new_err(format!(
+            "energy must be one of raw, conserving, scaled, got \"{name}\""
+        ))
+    })
+}
+
+/// Sets a field to a value of Python.
+fn set(params: &mut Params, field: &Field, value: &Bound<'_, PyAny>) -> PyResult<()> {
+    let name = field.name();
+    let (c_name, mut error) = (c_string(&name)?, no_error());
+    let wrong = |what: String| {
+        PyTypeError::new_err(format!("{name} must be {what}, got {}", value.get_type()))
+    };
+    if field.kind() == KIND_WORD {
+        let word: String = value.extract().map_err(|_| wrong("a word".to_owned()))?;
+        let word = c_string(&word)?;
+        // SAFETY: the arguments are of this call.
+        let status = unsafe {
+            setup::hairis_params_set_word(params, c_name.as_ptr(), word.as_ptr(), &raw mut error)
+        };
+        return check(status, &error);
+    }
+    let numbers: Vec<f64> = if field.kind() == KIND_NUMBER {
+        vec![value.extract().map_err(|_| wrong("a number".to_owned()))?]
+    } else {
+        value
+            .extract()
+            .map_err(|_| wrong(format!("{} numbers", field.width())))?
+    };
+    let numbers: Vec<f32> = numbers.iter().map(|x| *x as f32).collect();
+    // SAFETY: the arguments are of this call.
+    let status = unsafe {
+        let numbers = (numbers.as_ptr(), numbers.len());
+        setup::hairis_params_set(
+            params,
+            c_name.as_ptr(),
+            numbers.0,
+            numbers.1,
+            &raw mut error,
+        )
+    };
+    check(status, &error)
+}
+
+/// A value as Python writes it, or as JSON has it.
+fn written(value: &Value, is_json: bool) -> String {
+    let (open, close) = if is_json { ('[', ']') } else { ('(', ')') };
+    match value {
+        Value::Number(x) => format!("{x:?}"),
+        Value::Word(word) => format!("\"{word}\""),
+        Value::Numbers(numbers) => {
+            let numbers: Vec<_> = numbers.iter().map(|x| format!("{x:?}")).collect();
+            format!("{open}{}{close}", numbers.join(", "))
+        }
+    }
+}
+
+impl Material {
+    pub(crate) fn described(&self) -> Model {
+        Model::at(self.params.model)
+    }
+
+    /// The fields that have a value.
+    fn given(&self) -> impl Iterator<Item = (String, Value)> {
+        let params = self.params;
+        let fields = self.described().fields().into_iter();
+        fields.filter_map(move |field| Some((field.name(), field.value(&params)?)))
+    }
+
+    /// The columns of hits: `wo`, `h` and the third, of one length.
+    fn inputs<'py>(
+        wo: &Bound<'py, PyAny>,
+        third: (&str, &Bound<'py, PyAny>),
+        h: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<(Input<'py>, Input<'py>, Option<Input<'py>>)> {
+        let wo = Input::new("wo", wo, 3, None)?;
+        let n = Some(wo.n);
+        let third = Input::new(third.0, third.1, 3, n)?;
+        Ok((wo, third, h.map(|h| Input::new("h", h, 1, n)).transpose()?))
+    }
+}
+
+#[pymethods]
+impl Material {
+    #[new]
+    #[pyo3(signature = (model="gaussian", preset=None, *, energy="conserving", **fields))]
+    fn new(
+        model: &str,
+        preset: Option<&str>,
+        energy: &str,
+        fields: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let (energy, code) = energy_of(energy)?;
+        let choice = models_of_library()
+            .find(|one| one.name() == model)
+            .and_then(|one| one.choice());
+        let given = |name: &str| fields.map_or(Ok(None), |fields| fields.get_item(name));
+        let word: Option<String> = match &choice {
+            Some(choice) => given(choice)?.map(|word| word.extract()).transpose()?,
+            None => None,
+        };
+        let word = word.map(|word| c_string(&word)).transpose()?;
+        let (model, preset) = (c_string(model)?, preset.map(c_string).transpose()?);
+        let pointer =
+            |text: &Option<CString>| text.as_deref().map_or(core::ptr::null(), CStr::as_ptr);
+        let mut error = no_error();
+        let mut params = Params {
+            model: 0,
+            given: 0,
+            numbers: [0.0; 32],
+        };
+        // SAFETY: the arguments are of this call.
+        let status = unsafe {
+            let names = (model.as_ptr(), pointer(&word), pointer(&preset));
+            setup::hairis_params_init(&raw mut params, names.0, names.1, names.2, &raw mut error)
+        };
+        check(status, &error)?;
+        let known = Model::at(params.model).fields();
+        let mut heads: Vec<(String, String)> = Vec::new();
+        for (name, value) in fields.into_iter().flatten() {
+            let name: String = name.extract()?;
+            if Some(&name) == choice.as_ref() {
+                continue;
+            }
+            let Some(field) = known.iter().find(|field| field.name() == name) else {
+                let names: Vec<_> = choice
+                    .iter()
+                    .cloned()
+                    .chain(known.iter().map(Field::name))
+                    .collect();
+                let names = names.join(", ");
+                return Err(PyValueError::new_err(format!(
+                    "field must be one of {names}, got \"{name}\""
+                )));
+            };
+            if let Some((_, other)) = heads.iter().find(|(head, _)| *head == field.head()) {
+                return Err(PyValueError::new_err(format!(
+                    "{other} and {name} exclude each other; give one"
+                )));
+            }
+            heads.push((field.head(), name));
+            set(&mut params, field, &value)?;
+        }
+        let mut raw = RawMaterial {
+            head: [0; 4],
+            body: [0; MATERIAL_SIZE - 16],
+        };
+        // SAFETY: the arguments are of this call.
+        let status = unsafe {
+            setup::hairis_material_init(&raw mut raw, &raw const params, code, &raw mut error)
+        };
+        check(status, &error)?;
+        Ok(Self {
+            raw,
+            params,
+            energy,
+        })
+    }
+
+    /// A material from an object of `hairis eval`: "model", "params", and the field of its choice. Other fields of a request
+    /// are ignored.
+    ///
+    /// Examples
+    /// --------
+    /// >>> hair = hairis.Material("chiang", "blond", select="by-channel")
+    /// >>> hairis.Material.from_json(hair.to_json()) == hair
+    /// True
+    #[staticmethod]
+    #[pyo3(signature = (text, *, energy="conserving"))]
+    fn from_json(py: Python<'_>, text: &str, energy: &str) -> PyResult<Self> {
+        let object = py.import("json")?.call_method1("loads", (text,))?;
+        let object = object.cast_into::<PyDict>()?;
+        let missing = |name| PyValueError::new_err(format!("the object must have \"{name}\""));
+        let model: String = object
+            .get_item("model")?
+            .ok_or_else(|| missing("model"))?
+            .extract()?;
+        let params = object
+            .get_item("params")?
+            .ok_or_else(|| missing("params"))?;
+        let fields = params.cast_into::<PyDict>()?.copy()?;
+        let choice = models_of_library()
+            .find(|one| one.name() == model)
+            .and_then(|one| one.choice());
+        if let Some(choice) = choice
+            && let Some(word) = object.get_item(&choice)?
+        {
+            fields.set_item(choice, word)?;
+        }
+        Self::new(&model, None, energy, Some(&fields))
+    }
+
+    /// The material as an object of `hairis eval`, in one line. Energy is not part of it.
+    ///
+    /// Examples
+    /// --------
+    /// >>> hairis.Material("kajiya-kay", "brown").to_json()[:34]
+    /// '{"model": "kajiya-kay", "params": '
+    fn to_json(&self) -> String {
+        let model = self.described();
+        let choice = model.choice().map_or_else(String::new, |choice| {
+            format!(" \"{choice}\": \"{}\",", model.word())
+        });
+        let params: Vec<_> = self
+            .given()
+            .map(|(name, value)| format!("\"{name}\": {}", written(&value, true)))
+            .collect();
+        format!(
+            "{{\"model\": \"{}\",{choice} \"params\": {{{}}}}}",
+            model.name(),
+            params.join(", ")
+        )
+    }
+
+    /// Name of the model.
+    #[getter]
+    fn model(&self) -> String {
+        self.described().name()
+    }
+
+    /// How directions are sampled: the word of "sampler" or "select"; None where there is no choice.
+    #[getter]
+    fn choice(&self) -> Option<String> {
+        let model = self.described();
+        model.choice().map(|_| model.word())
+    }
+
+    /// "raw", "conserving" or "scaled".
+    #[getter]
+    const fn energy(&self) -> &'static str {
+        self.energy
+    }
+
+    /// Values of the fields: a float, a tuple of floats or a word each.
+    #[getter]
+    fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let fields = PyDict::new(py);
+        for (name, value) in self.given() {
+            match value {
+                Value::Number(x) => fields.set_item(name, x)?,
+                Value::Numbers(numbers) => fields.set_item(name, PyTuple::new(py, numbers)?)?,
+                Value::Word(word) => fields.set_item(name, word)?,
+            }
+        }
+        Ok(fields)
+    }
+
+    /// Names of the lobes, by slot: the numbers in the column "lobe" of samples.
+    #[getter]
+    fn lobe_names(&self) -> Vec<String> {
+        self.described().lobes()
+    }
+
+    /// Whether the model reads `h`, the offset of a hit across the fibre.
+    #[getter]
+    fn near_field(&self) -> bool {
+        self.described().is_near_field()
+    }
+
+    /// The largest directional albedo, without the factor of energy "conserving": above 1, the model gains light.
+    #[getter]
+    fn max_albedo(&self) -> f64 {
+        // SAFETY: the material is initialised.
+        double(unsafe { setup::hairis_material_max_albedo(&raw const self.raw) })
+    }
+
+    /// The BSDF at a hit.
+    ///
+    /// Parameters
+    /// ----------
+    /// wo : sequence of 3 floats
+    ///     Towards the viewer, in the fibre's frame: u along it from root to tip, v and w across.
+    /// h : float
+    ///     Offset of the hit across the fibre, in [-1, 1]; only "chiang" reads it.
+    ///
+    /// Examples
+    /// --------
+    /// >>> bsdf = hairis.Material("chiang").prepare((0.6, 0.8, 0.0), h=0.3)
+    /// >>> sum(lobe[0] for lobe in bsdf.albedo().values()) <= 1.001
+    /// True
+    #[pyo3(signature = (wo, h=0.0))]
+    fn prepare(slf: Bound<'_, Self>, wo: [f32; 3], h: f32) -> Bsdf {
+        Bsdf::new(slf.unbind(), wo, h)
+    }
+
+    /// Values and densities of N directions, each at a hit of its own.
+    ///
+    /// Parameters
+    /// ----------
+    /// wo, wi : ndarray, float32, shape (3, N), C-contiguous
+    ///     Directions towards the viewer and the light, in the fibre's frame, of unit length.
+    /// h : ndarray, float32, shape (N,), optional
+    ///     Offsets across the fibre, in [-1, 1]; 0 without it.
+    /// out : dict, optional
+    ///     Columns to write, some of those below; others are not written.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     "value", shape (3, N): S without the cosine, linear RGB, per steradian. "pdf", shape (N,): density, per steradian. The
+    ///     dict is `out` if that is given.
+    ///
+    /// Examples
+    /// --------
+    /// >>> wo, wi = np.zeros((2, 3, 5), np.float32)
+    /// >>> wo[1], wi[2] = 1, 1
+    /// >>> hairis.Material("gaussian", "blond").eval_hits(wo, wi)["value"].shape
+    /// (3, 5)
+    #[pyo3(signature = (wo, wi, h=None, *, out=None))]
+    fn eval_hits<'py>(
+        &self,
+        py: Python<'py>,
+        wo: &Bound<'py, PyAny>,
+        wi: &Bound<'py, PyAny>,
+        h: Option<&Bound<'py, PyAny>>,
+        out: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (wo, wi, h) = Self::inputs(wo, ("wi", wi), h)?;
+        let n = wo.n;
+        let outputs = Outputs::new(py, out, &EVALS, n)?;
+        let [value, pdf] = outputs.rows[..] else {
+            unreachable!("two columns")
+        };
+        let h_rows = h.as_ref().map_or(core::ptr::null(), |h| h.rows()[0]);
+        let columns = Hits {
+            wo: wo.rows(),
+            h: h_rows,
+            index: core::ptr::null(),
+        };
+        let (raw, wi_rows, to) = (&raw const self.raw, wi.rows(), Evals { value, pdf: pdf[0] });
+        // SAFETY: the arrays have n numbers in each row, and are borrowed.
+        Detached(move || unsafe {
+            hits::hairis_eval_hits(
+                raw,
+                1,
+                n,
+                &raw const columns,
+                &raw const wi_rows,
+                &raw const to,
+            )
+        })
+        .run(py)?;
+        Ok(outputs.dict)
+    }
+
+    /// N samples, each at a hit of its own.
+    ///
+    /// Parameters
+    /// ----------
+    /// wo : ndarray, float32, shape (3, N), C-contiguous
+    ///     Directions towards the viewer, in the fibre's frame, of unit length.
+    /// xi : ndarray, float32, shape (3, N), C-contiguous
+    ///     Uniform numbers in [0, 1): for the lobe, the inclination and the azimuth.
+    /// h : ndarray, float32, shape (N,), optional
+    ///     Offsets across the fibre, in [-1, 1]; 0 without it.
+    /// out : dict, optional
+    ///     Columns to write, some of those below; others are not written.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     "wi", shape (3, N): directions. "value", shape (3, N), and "pdf", shape (N,): as in `eval_hits`. "weight", shape (3, N):
+    ///     value times the cosine over the density. "lobe", shape (N,): place in `lobe_names`, -1 for a discarded sample, which has
+    ///     value, pdf and weight 0; it counts.
+    ///
+    /// Examples
+    /// --------
+    /// >>> wo = np.repeat(np.float32([[0.6], [0.8], [0]]), 1000, axis=1)
+    /// >>> xi = np.random.default_rng(1).random((3, 1000), np.float32)
+    /// >>> samples = hairis.Material("gaussian", "brown", sampler="matched").sample_hits(wo, xi)
+    /// >>> bool(0.1 < samples["weight"].mean() < 1)
+    /// True
+    #[pyo3(signature = (wo, xi, h=None, *, out=None))]
+    fn sample_hits<'py>(
+        &self,
+        py: Python<'py>,
+        wo: &Bound<'py, PyAny>,
+        xi: &Bound<'py, PyAny>,
+        h: Option<&Bound<'py, PyAny>>,
+        out: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (wo, xi, h) = Self::inputs(wo, ("xi", xi), h)?;
+        let n = wo.n;
+        let outputs = Outputs::new(py, out, &SAMPLES, n)?;
+        let to = samples(&outputs);
+        let h_rows = h.as_ref().map_or(core::ptr::null(), |h| h.rows()[0]);
+        let columns = Hits {
+            wo: wo.rows(),
+            h: h_rows,
+            index: core::ptr::null(),
+        };
+        let (raw, xi_rows) = (&raw const self.raw, xi.rows());
+        // SAFETY: the arrays have n numbers in each row, and are borrowed.
+        Detached(move || unsafe {
+            hits::hairis_sample_hits(
+                raw,
+                1,
+                n,
+                &raw const columns,
+                &raw const xi_rows,
+                &raw const to,
+            )
+        })
+        .run(py)?;
+        Ok(outputs.dict)
+    }
+
+    pub(crate) fn __repr__(&self) -> String {
+        let model = self.described();
+        let mut text = format!(
+            "hairis.Material(\"{}\", energy=\"{}\"",
+            model.name(),
+            self.energy
+        );
+        if let Some(choice) = model.choice() {
+            let _ = write!(text, ", {choice}=\"{}\"", model.word());
+        }
+        for (name, value) in self.given() {
+            let _ = write!(text, ", {name}={}", written(&value, false));
+        }
+        text + ")"
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        let bits = |params: &Params| params.numbers.map(f32::to_bits);
+        self.energy == other.energy
+            && (self.params.model, self.params.given) == (other.params.model, other.params.given)
+            && bits(&self.params) == bits(&other.params)
+    }
+
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        pyo3::types::PyString::new(py, &self.__repr__()).hash()
+    }
+
+    /// Arguments of the call that makes the same material: for pickle and copy.
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((String,), Bound<'py, PyDict>)> {
+        let (model, arguments) = (self.described(), self.fields(py)?);
+        arguments.set_item("energy", self.energy)?;
+        if let Some(choice) = model.choice() {
+            arguments.set_item(choice, model.word())?;
+        }
+        Ok(((model.name(),), arguments))
+    }
+}
+
+impl Material {
+    /// The BSDF at a hit.
+    pub(crate) fn bsdf(&self, wo: [f32; 3], h: f32) -> hairis_capi::layout::RawBsdf {
+        let mut raw = hairis_capi::layout::RawBsdf {
+            head: [0; 4],
+            body: [0; hairis_capi::layout::BSDF_SIZE - 16],
+        };
+        // SAFETY: the material is initialised, and the BSDF of this call.
+        unsafe {
+            points::hairis_prepare(&raw mut raw, &raw const self.raw, wo[0], wo[1], wo[2], h)
+        };
+        raw
+    }
+}
+
+/// The columns of samples as C has them.
+pub(crate) fn samples(outputs: &Outputs<'_>) -> Samples {
+    let [wi, value, pdf, weight, lobe] = outputs.rows[..] else {
+        unreachable!("five columns")
+    };
+    Samples {
+        wi,
+        value,
+        pdf: pdf[0],
+        weight,
+        lobe: lobe[0],
+    }
+}

@@ -1,0 +1,26 @@
+"""Names that docstrings' examples use, and directions for tests."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+
+def directions(n: int, seed: int) -> NDArray[np.float32]:
+    """Return unit vectors, uniform over the sphere."""
+    v = np.random.default_rng(seed).normal(size=(3, n))
+    return np.ascontiguousarray(v / np.linalg.norm(v, axis=0), np.float32)
+
+
+def bits(a: NDArray[Any]) -> NDArray[np.uint32]:
+    """Return the bits of floats: NaN equals NaN, and 0 is not -0."""
+    return a.view(np.uint32)
+
+
+@pytest.fixture
+def xi() -> NDArray[np.float32]:
+    """Uniform numbers."""
+    return np.random.default_rng(3).random((3, 1000), np.float32)

@@ -1,0 +1,215 @@
+"""Tests of the wheel: what it answers, what it refuses, and that objects make themselves again."""
+
+from __future__ import annotations
+
+import copy
+import doctest
+import json
+import pickle
+import threading
+from typing import Any
+
+import hairis
+import hairis.plot
+import numpy as np
+import pytest
+from conftest import bits, directions
+from numpy.typing import NDArray
+
+ALL = [
+    (name, preset, {} if model["choice"] is None else {model["choice"]: word})
+    for name, model in hairis.models().items()
+    for preset in model["presets"]
+    for word in (model["choices"] or [None])
+]
+
+
+@pytest.mark.parametrize(("model", "preset", "choice"), ALL)
+@pytest.mark.parametrize("energy", ["raw", "conserving", "scaled"])
+def test_objects_make_themselves(model: str, preset: str, choice: dict[str, Any], energy: Any) -> None:
+    hair = hairis.Material(model, preset, energy=energy, **choice)
+    for same in (
+        eval(repr(hair)),
+        pickle.loads(pickle.dumps(hair)),
+        copy.deepcopy(hair),
+        hairis.Material.from_json(hair.to_json(), energy=energy),
+        hairis.Material(model, energy=energy, **choice, **hair.fields),
+    ):
+        assert same == hair and hash(same) == hash(hair) and repr(same) == repr(hair)
+    assert json.loads(hair.to_json())["params"].keys() == hair.fields.keys()
+    wi = directions(40, 1)
+    bsdf = hair.prepare((0.6, 0.0, 0.8), h=0.25)
+    kept = bsdf.with_lobes(hair.lobe_names[:1])
+    for one in (bsdf, kept):
+        for same_bsdf in (eval(repr(one)), pickle.loads(pickle.dumps(one))):
+            assert repr(same_bsdf) == repr(one)
+            for name, column in one.eval_columns(wi).items():
+                assert (bits(column) == bits(same_bsdf.eval_columns(wi)[name])).all()
+
+
+def test_materials_differ() -> None:
+    hair = hairis.Material("gaussian", "brown")
+    assert hair != hairis.Material("gaussian", "red")
+    assert hair != hairis.Material("gaussian", "brown", energy="raw")
+    assert hair != hairis.Material("gaussian", "brown", sampler="matched")
+    assert hair != "brown"
+
+
+@pytest.mark.parametrize(("model", "preset", "choice"), ALL)
+def test_columns_agree(model: str, preset: str, choice: dict[str, Any], xi: NDArray[np.float32]) -> None:
+    """Samples have the densities and values that evaluations have; furnace and albedo agree."""
+    hair = hairis.Material(model, preset, energy="raw", **choice)
+    bsdf = hair.prepare((0.6, 0.8, 0.0), h=0.1)
+    samples = bsdf.sample_columns(xi)
+    live = samples["lobe"] >= 0
+    again = bsdf.eval_columns(samples["wi"])
+    np.testing.assert_allclose(samples["pdf"][live], again["pdf"][live], rtol=2e-3)
+    cos = np.hypot(samples["wi"][1], samples["wi"][2])
+    weight = samples["value"][:, live] * cos[live] / samples["pdf"][live]
+    np.testing.assert_allclose(samples["weight"][:, live], weight, rtol=1e-3, atol=1e-6)
+    assert (samples["lobe"] < len(hair.lobe_names)).all()
+    albedo = np.sum(list(bsdf.albedo().values()), axis=0)
+    error = samples["weight"].std(axis=1) / np.sqrt(xi.shape[1])
+    assert (abs(samples["weight"].mean(axis=1) - albedo) < 5 * error + 1e-4).all()
+    value = sum(np.array(v) * np.array(c) for v, c, _ in bsdf.lobes((0.0, 0.6, 0.8)).values())
+    one = bsdf.eval_columns(np.float32([[0.0], [0.6], [0.8]]))["value"][:, 0]
+    np.testing.assert_allclose(value, one, rtol=1e-4, atol=1e-7)
+
+
+def test_hits_are_bsdfs() -> None:
+    wo, wi = directions(200, 5), directions(200, 6)
+    h = np.random.default_rng(7).uniform(-1, 1, 200).astype(np.float32)
+    for energy in ("raw", "conserving", "scaled"):
+        hair = hairis.Material("chiang", "blond", energy=energy)  # type: ignore[arg-type]
+        hits = hair.eval_hits(wo, wi, h)
+        for i in range(0, 200, 17):
+            one = hair.prepare(wo[:, i], float(h[i])).eval_columns(np.ascontiguousarray(wi[:, i : i + 1]))
+            np.testing.assert_allclose(hits["value"][:, i], one["value"][:, 0], rtol=1e-3, atol=1e-6)
+        assert not (bits(hits["pdf"]) == bits(hair.eval_hits(wo, wi)["pdf"])).all()
+
+
+def test_energy() -> None:
+    bright = {energy: hairis.Material("gaussian", "bright", energy=energy) for energy in ("raw", "conserving", "scaled")}  # type: ignore[arg-type]
+    albedo = {name: sum(lobe[0] for lobe in one.prepare((0.99, 0.14, 0)).albedo().values()) for name, one in bright.items()}
+    assert albedo["raw"] > 1.5 and 0.99 < albedo["conserving"] < 1.001 and albedo["scaled"] < 1.001
+    assert bright["raw"].max_albedo > 1.5 and bright["scaled"].max_albedo < 1.01
+
+
+def test_out() -> None:
+    hair = hairis.Material("gaussian", "brown", sampler="matched")
+    wo, wi, n = directions(77, 1), directions(77, 2), 77
+    whole = hair.eval_hits(wo, wi)
+    out = {"pdf": np.full(n, -1, np.float32)}
+    assert hair.eval_hits(wo, wi, out=out) is out
+    assert (bits(out["pdf"]) == bits(whole["pdf"])).all() and list(out) == ["pdf"]
+    xi = np.random.default_rng(1).random((3, n), np.float32)
+    all_columns, some = hair.sample_hits(wo, xi), {"weight": np.zeros((3, n), np.float32), "lobe": np.zeros(n, np.float32)}
+    hair.sample_hits(wo, xi, out=some)
+    assert all((bits(some[name]) == bits(all_columns[name])).all() for name in some)
+    # A view of a larger block is written in place, and nothing beside it.
+    block = np.full((5, 3, n), 7, np.float32)
+    hair.eval_hits(wo, wi, out={"value": block[2]})
+    assert (bits(block[2]) == bits(whole["value"])).all() and (block[[0, 1, 3, 4]] == 7).all()
+    for empty in (hair.eval_hits(wo[:, :0].copy(), wi[:, :0].copy()), hair.prepare((0, 1, 0)).eval_columns(wi[:, :0].copy())):
+        assert empty["value"].shape == (3, 0)
+
+
+def refusals() -> list[tuple[type[Exception], str, Any]]:
+    hair, good = hairis.Material("gaussian"), directions(10, 1)
+    bsdf = hair.prepare((0, 1, 0))
+    frozen = np.zeros((3, 10), np.float32)
+    frozen.flags.writeable = False
+    f32 = np.float32
+    return [
+        (ValueError, "model must be one of gaussian, cauchy, kajiya-kay, chiang, got \"hair\"", lambda: hairis.Material("hair")),
+        (ValueError, "preset must be one of .*, got \"green\"", lambda: hairis.Material("chiang", "green")),
+        (ValueError, "sampler must be one of published, .*, got \"best\"", lambda: hairis.Material("cauchy", sampler="best")),
+        (ValueError, "field must be one of sampler, alpha, .*, got \"eta\"", lambda: hairis.Material("gaussian", eta=1.5)),
+        (ValueError, r"beta\[1\] must be a width in \[1e-4, pi\] rad, got 0", lambda: hairis.Material(beta=(0.1, 0, 0.2))),
+        (ValueError, "beta must be 3 numbers", lambda: hairis.Material(beta=(0.1, 0.2))),
+        (ValueError, "got NaN", lambda: hairis.Material(gamma_tt=float("nan"))),
+        (ValueError, "sigma_a and color exclude", lambda: hairis.Material("chiang", sigma_a=(1, 1, 1), color=(1, 1, 1))),
+        (ValueError, "shifts must be one of d-eon, small-angle", lambda: hairis.Material("chiang", shifts="none")),
+        (TypeError, "shifts must be a word", lambda: hairis.Material("chiang", shifts=1.0)),
+        (TypeError, "gamma_tt must be a number", lambda: hairis.Material(gamma_tt="wide")),
+        (TypeError, "beta must be 3 numbers", lambda: hairis.Material(beta=0.1)),
+        (ValueError, "energy must be one of", lambda: hairis.Material(energy="most")),  # type: ignore[arg-type]
+        (ValueError, "no NUL", lambda: hairis.Material("gaus\0sian")),
+        (ValueError, "lobes must be some of r, tt, trt, glint, got \"X\"", lambda: bsdf.with_lobes(["X"])),
+        (TypeError, r"wi must be float32 of shape \(3, N\), C-contiguous; got float64", lambda: bsdf.eval_columns(good.astype(float))),  # type: ignore[arg-type]
+        (TypeError, r"wi must be .*; got float32 of shape \(10, 3\)", lambda: bsdf.eval_columns(good.T.copy())),
+        (TypeError, "not C-contiguous", lambda: bsdf.eval_columns(np.asfortranarray(good))),
+        (TypeError, "wi must be .*; got <class 'list'>", lambda: bsdf.eval_columns([[0], [1], [0]])),  # type: ignore[arg-type]
+        (TypeError, r"xi must be .* \(3, 10\)", lambda: hair.sample_hits(good, good[:, :9].copy())),
+        (TypeError, r"h must be float32 of shape \(10,\)", lambda: hair.eval_hits(good, good, np.zeros(9, f32))),
+        (TypeError, r"out\[\"pdf\"\] must be .* \(10,\)", lambda: bsdf.eval_columns(good, out={"pdf": np.zeros(9, f32)})),
+        (ValueError, "out must have some of value, pdf, got \"weight\"", lambda: bsdf.eval_columns(good, out={"weight": frozen})),
+        (ValueError, "writeable", lambda: bsdf.eval_columns(good, out={"value": frozen})),
+        (ValueError, "share no memory", lambda: bsdf.eval_columns(good, out={"value": good})),
+        (ValueError, "must have \"params\"", lambda: hairis.Material.from_json('{"model": "chiang"}')),
+    ]
+
+
+@pytest.mark.parametrize("place", range(len(refusals())))
+def test_refusals(place: int) -> None:
+    kind, text, call = refusals()[place]
+    with pytest.raises(kind, match=text):
+        call()
+
+
+def test_overlapping_outputs_are_refused() -> None:
+    bsdf = hairis.Material("gaussian").prepare((0, 1, 0))
+    block = np.zeros((4, 10), np.float32)
+    with pytest.raises(ValueError, match="share no memory"):
+        bsdf.eval_columns(directions(10, 1), out={"value": block[:3], "pdf": block[2]})
+    bsdf.eval_columns(directions(10, 1), out={"value": block[:3], "pdf": block[3]})
+
+
+def test_threads() -> None:
+    """Threads share a material and its inputs."""
+    hair, wo, wi = hairis.Material("cauchy", "brown"), directions(5000, 1), directions(5000, 2)
+    want = hair.eval_hits(wo, wi)
+    results: list[dict[str, Any]] = []
+    threads = [threading.Thread(target=lambda: results.append(hair.eval_hits(wo, wi))) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(results) == 4
+    assert all((bits(one[name]) == bits(want[name])).all() for one in results for name in want)
+
+
+def test_models() -> None:
+    for name, model in hairis.models().items():
+        assert hairis.Material(name).near_field == model["near_field"]
+        assert hairis.Material(name).lobe_names == model["lobes"]
+        for field, info in model["fields"].items():
+            assert info["doc"].endswith(".") and (info["kind"] == "word") == (info["range"] is None)
+            if info["kind"] == "word":
+                assert [hairis.Material(name, **{field: word}).fields[field] for word in info["labels"]] == info["labels"]
+
+
+def test_plots() -> None:
+    import matplotlib
+
+    matplotlib.use("agg")
+    bsdf = hairis.Material("gaussian", "brown", sampler="matched").prepare((0.5, 0.75**0.5, 0.0))
+    curves = {line.get_label(): line.get_ydata() for line in hairis.plot.polar(bsdf).get_lines()}
+    assert set(curves) == {"r", "tt", "trt", "glint", "sum"}
+    parts = sum(np.asarray(curves[name]) for name in ("r", "tt", "trt", "glint"))
+    np.testing.assert_allclose(parts, np.asarray(curves["sum"]), rtol=1e-3, atol=1e-5)
+    image = hairis.plot.sphere(bsdf, resolution=32).get_images()[0].get_array()
+    assert image is not None and image.shape == (32, 64) and np.isfinite(image).all()
+
+
+@pytest.mark.parametrize("module", [hairis, hairis.plot])
+def test_examples_of_docstrings(module: Any) -> None:
+    results = doctest.testmod(module, extraglobs={"hairis": hairis, "np": np})
+    assert results.attempted > 2 and results.failed == 0
+
+
+def test_every_call_has_an_example() -> None:
+    for kind in (hairis.Material, hairis.Bsdf):
+        for name, member in vars(kind).items():
+            if callable(getattr(kind, name)) and not name.startswith("_"):
+                assert ">>>" in (member.__doc__ or getattr(kind, name).__doc__), name
