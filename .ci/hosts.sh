@@ -1,0 +1,101 @@
+#!/bin/bash
+# Promise: C, C++, Python and Mitsuba are hosts of the kernels. The C library answers as Rust does, to the bit, for every model and entry
+# point; refuses without writing; reads and writes nothing beyond its columns; exports its header's names alone; links by CMake, by
+# pkg-config and beside another Rust library. The wheel passes its tests. Mitsuba's own chi-square test accepts every sampler.
+#
+# Needs cargo, gcc, and Debian's packages and PyPI for the rest. Prints the time of each part, and the sizes.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. .ci/flags
+root=$PWD
+target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
+work=$target/hosts
+mkdir -p "$work"
+prefix=$work/prefix
+capi=$root/variants/capi
+part() { printf -- '--- %s (%ss)\n' "$*" "$SECONDS"; }
+
+part tools
+packages=()
+command -v cmake > /dev/null || packages+=(cmake)
+command -v pkg-config > /dev/null || packages+=(pkg-config)
+command -v valgrind > /dev/null || packages+=(valgrind)
+[ ${#packages[@]} = 0 ] || { apt-get update -qq && apt-get install -qqy "${packages[@]}" > /dev/null; }
+python=$work/venv/bin/python
+[ -x "$python" ] || python3 -m venv "$work/venv"
+"$python" -m pip install -q 'maturin>=1.9,<2' numpy mypy pytest matplotlib 'mitsuba==3.9.1' 'nanobind>=2'
+
+part builds
+# The libraries on one core; what Rust answers, and the wheel, on the other.
+CARGO_BUILD_JOBS=1 "$capi/install.sh" "$prefix" > "$work/install.log" 2>&1 &
+libraries=$!
+CARGO_BUILD_JOBS=1 cargo build -q --release --locked --manifest-path .ci/hosts/Cargo.toml --target-dir "$work/answers"
+"$work/answers/release/hairis-hosts" "$work"
+(cd variants/python && rm -rf "$work/wheels" &&
+  "$work/venv/bin/maturin" build -q --locked --target-dir "$work/wheel" --out "$work/wheels")
+wait $libraries || { cat "$work/install.log"; echo "FAIL install.sh"; exit 1; }
+
+part header
+strict=(-Wall -Wextra -pedantic -Werror -I"$prefix/include")
+for standard in c11 c17; do gcc -std=$standard "${strict[@]}" -fsyntax-only "$work/layout.c"; done
+for standard in c++17 c++20; do g++ -std=$standard "${strict[@]}" -x c++ -fsyntax-only "$prefix/include/hairis.hpp"; done
+names() { sort -u | sed 's/ *$//'; }
+declared=$(grep -oE '\bhairis_[a-z_]+\(' "$prefix/include/hairis.h" | tr -d '(' | names)
+exported=$(nm -D --defined-only "$prefix/lib/libhairis.so" | awk '{print $3}' | names)
+[ "$declared" = "$exported" ] || { diff <(echo "$declared") <(echo "$exported"); echo "FAIL the library exports other names than the header declares"; exit 1; }
+echo "$(grep -c _Static_assert "$work/layout.c") assertions on the layout; $(wc -l <<<"$exported") names exported, those of the header"
+readelf -d "$prefix/lib/libhairis.so" | grep -q 'SONAME.*\[libhairis.so.1\]' || { echo "FAIL SONAME"; exit 1; }
+
+part C
+dynamic=(-L"$prefix/lib" -Wl,-rpath,"$prefix/lib" -lhairis -lm)
+build_c() { gcc -std=c11 -O2 -g "${strict[@]}" "$1" -o "$2" "${@:3}"; }
+build_c "$capi/tests/bits.c" "$work/bits" "${dynamic[@]}"
+build_c "$capi/tests/refusals.c" "$work/refusals" "${dynamic[@]}"
+"$work/bits" "$work/answers.bin"
+"$work/refusals"
+# A wrong answer is found: the last but one number of the file is changed.
+cp "$work/answers.bin" "$work/wrong.bin"
+printf '\x01' | dd of="$work/wrong.bin" bs=1 seek=$(($(stat -c %s "$work/wrong.bin") - 7)) conv=notrunc status=none
+if "$work/bits" "$work/wrong.bin" > /dev/null 2>&1; then echo "FAIL bits accepts a wrong answer"; exit 1; fi
+
+part valgrind
+valgrind -q --error-exitcode=9 "$work/bits" "$work/answers.bin"
+valgrind -q --error-exitcode=9 "$work/refusals"
+
+part 'C++, CMake, pkg-config'
+cmake -S "$capi/tests" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Release > /dev/null
+cmake --build "$work/consumer" > /dev/null
+"$work/consumer/shared"
+"$work/consumer/static" > /dev/null
+export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
+for example in furnace.c pbrt_hair.cpp resample.cpp; do
+  case $example in *.c) compiler='gcc -std=c11' ;; *) compiler='g++ -std=c++17' ;; esac
+  $compiler -O2 -Wall -Wextra -pedantic -Werror "$capi/examples/$example" -o "$work/example" $(pkg-config --cflags --libs hairis) -lm
+  LD_LIBRARY_PATH=$prefix/lib "$work/example" > "$work/example.log" || { cat "$work/example.log"; echo "FAIL $example"; exit 1; }
+  tail -2 "$work/example.log"
+done
+
+part 'two Rust libraries'
+rustc --edition 2024 --crate-type staticlib -O "$capi/tests/other.rs" -o "$work/libother.a"
+for order in "$work/libother.a $prefix/lib/libhairis.a" "$prefix/lib/libhairis.a $work/libother.a"; do
+  gcc -std=c11 "${strict[@]}" "$capi/tests/two.c" -o "$work/two" $order -lpthread -ldl -lm
+  "$work/two"
+done
+
+part wheel
+"$python" -m pip install -q --force-reinstall --no-deps "$work"/wheels/*.whl
+"$python" -m pytest -q -p no:cacheprovider variants/python/tests
+(cd variants/python && MYPYPATH=tests "$work/venv/bin/mypy" --strict --cache-dir "$work/mypy" hairis tests examples)
+"$python" variants/python/tests/same_as_c.py "$prefix/lib/libhairis.so"
+
+part Mitsuba
+(cd "$capi/examples/mitsuba" && "$python" chi2.py 1000000)
+"$capi/examples/mitsuba/build.sh" "$python" "$prefix" "$work/plugins"
+(cd "$work" && "$python" "$capi/examples/mitsuba/pixels.py" "$work/plugins")
+
+part figures
+printf 'libhairis.so %s bytes, libhairis.a %s, wheel %s\n' "$(stat -c %s "$prefix/lib/libhairis.so.1.0.0")" \
+  "$(stat -c %s "$prefix/lib/libhairis.a")" "$(stat -c %s "$work"/wheels/*.whl)"
+[ "$(stat -c %s "$prefix/lib/libhairis.so.1.0.0")" -le 4000000 ] || { echo "FAIL the library has more than 4 MB"; exit 1; }
+[ "$(stat -c %s "$work"/wheels/*.whl)" -le 1500000 ] || { echo "FAIL the wheel has more than 1.5 MB"; exit 1; }
+echo "hosts passed in ${SECONDS}s"
