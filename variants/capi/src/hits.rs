@@ -15,7 +15,7 @@ use hairis::columns::{EvalColumns, HitColumns, SampleColumns};
 use hairis::{Bsdf8, Hit8, Material8, Vec3x8, f32x8};
 use hairis_variants::{ModelId, Registered};
 
-/// What a call gives, besides hits: a direction to evaluate, or numbers to sample with.
+/// Columns that a call takes besides hits: a direction to evaluate, or numbers to sample with.
 #[derive(Clone, Copy)]
 enum Call {
     Eval([*mut f32; 4]),

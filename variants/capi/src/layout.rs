@@ -314,7 +314,7 @@ structs! {
     Choice = "hairis_choice" {
         /// Index of the candidate.
         index: usize,
-        /// How many of the choices it is.
+        /// Number of the choices that fell on it.
         count: u32,
         /// Light that it adds if nothing is in the way, linear RGB.
         contribution: [f32; 3],

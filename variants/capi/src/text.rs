@@ -85,7 +85,7 @@ impl<'a, I: Iterator<Item = &'a str> + Clone> fmt::Display for List<I> {
     }
 }
 
-/// What was refused: its field, the number of it and its value.
+/// Place of a refusal: the field, the number of it and its value.
 pub(crate) struct Fault<'a> {
     pub(crate) field: &'a str,
     pub(crate) number: Option<usize>,
