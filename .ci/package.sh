@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
-packages=(hairis hairis-variants hairis-reference hairis-conformance hairis-benches hairis-instruments hairis-materials hairis-harness)
+packages=(hairis hairis-variants hairis-capi hairis-reference hairis-conformance hairis-benches hairis-instruments hairis-materials hairis-harness)
 
 rm -rf "$target/package"
 cargo package -q --no-verify --allow-dirty --target-dir "$target" "${packages[@]/#/-p}" 2> "$dir/log" || { cat "$dir/log"; exit 1; }
@@ -26,6 +26,7 @@ check() { # check PACKAGE ARGUMENT...: compiles it from its archive, with the ot
 # The first three depend on the package of their tests by path alone: their archives have no tests to compile.
 check hairis --lib --all-features
 check hairis-variants --lib --all-features
+check hairis-capi --lib --all-features
 check hairis-reference --lib
 check hairis-conformance --lib
 check hairis-instruments --lib --all-features

@@ -19,7 +19,7 @@ from ._hairis import Bsdf
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-LUMINANCE = np.float32([0.2126, 0.7152, 0.0722])
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
 def _directions(theta: NDArray[Any], phi: NDArray[Any]) -> NDArray[np.float32]:

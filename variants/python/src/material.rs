@@ -434,7 +434,7 @@ impl Material {
     ///
     /// Examples
     /// --------
-    /// >>> wo = np.repeat(np.float32([[0.6], [0.8], [0]]), 1000, axis=1)
+    /// >>> wo = np.repeat(np.array([[0.6], [0.8], [0]], np.float32), 1000, axis=1)
     /// >>> xi = np.random.default_rng(1).random((3, 1000), np.float32)
     /// >>> samples = hairis.Material("gaussian", "brown", sampler="matched").sample_hits(wo, xi)
     /// >>> bool(0.1 < samples["weight"].mean() < 1)

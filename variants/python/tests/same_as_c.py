@@ -47,7 +47,7 @@ def main() -> None:
     params, material, bsdf = Params(), room(1024), room(1024)
     assert library.hairis_params_init(C.byref(params), b"gaussian", b"matched", b"brown", None) == 0
     assert library.hairis_material_init(C.c_void_p(material.ctypes.data), C.byref(params), 0, None) == 0
-    library.hairis_prepare.argtypes = [C.c_void_p, C.c_void_p] + 4 * [C.c_float]
+    library.hairis_prepare.argtypes = [C.c_void_p, C.c_void_p, C.c_float, C.c_float, C.c_float, C.c_float]
     library.hairis_prepare.restype = None
     library.hairis_prepare(bsdf.ctypes.data, material.ctypes.data, 0.6, 0.8, 0.0, 0.0)
     library.hairis_eval_columns.argtypes = [C.c_void_p, C.c_size_t, C.c_void_p, C.c_void_p]
@@ -70,11 +70,13 @@ def main() -> None:
                 material.ctypes.data, 1, n, C.byref(hits), C.byref(wi_rows), C.byref(evals)
             ) == 0
 
-        for name, wheel, c in (
+        calls: list[tuple[str, Callable[[], object], Callable[[], object]]] = [
             ("columns", lambda: one.eval_columns(wi, out=out), c_columns),
             ("hits", lambda: hair.eval_hits(wo, wi, out=out), c_hits),
-        ):
-            wheel(), c()
+        ]
+        for name, wheel, c in calls:
+            wheel()
+            c()
             same = (bits(out["value"]) == bits(value)).all() and (bits(out["pdf"]) == bits(pdf)).all()
             assert same, f"{name} of {n} differ"
             print(f"{name:8} {n:8} {nanoseconds(wheel, n):9.2f} {nanoseconds(c, n):9.2f}", flush=True)
