@@ -13,7 +13,7 @@ check() { # check PACKAGE FEATURES...: without the default features, with each o
     echo "$package with '$features'"
   done
 }
-check hairis '' serde
+check hairis '' serde trace
 check hairis-reference ''
 check hairis-variants '' any serde any,serde
 # In a profile that aborts: without std nothing can unwind.
@@ -21,6 +21,7 @@ for features in '' few std,few; do
   cargo check -q --locked --profile capi -p hairis-capi --no-default-features --features "$features" || { echo "FAIL hairis-capi with '$features'"; exit 1; }
   echo "hairis-capi with '$features'"
 done
+check hairis-shaders '' spirv
 check hairis-instruments '' parquet png parquet,png
 check hairis-harness '' parquet png parquet,png
 

@@ -58,6 +58,8 @@ pub(crate) mod pair;
 pub(crate) mod portable;
 mod scalar;
 pub(crate) mod schedule;
+#[cfg(feature = "trace")]
+pub mod trace;
 
 pub use crate::frame::Vec3x;
 pub use crate::lane_struct;

@@ -82,6 +82,9 @@ const LEAST_EXPONENT: f32 = 115.0;
 /// The largest squared distance that [`gaussian`] tells from others: a little less than that of the least exponent, so that no
 /// direction of rounding leads below it.
 const FURTHEST: f32 = 0.999_98 * LEAST_EXPONENT / -TO_EXPONENT;
+/// [`FURTHEST`] of a power of the target, a little below the largest square of [`normal_tail`].
+const NATIVE_FURTHEST: f32 = 159.41;
+
 /// `exp(-s/2)` for `s >= 0`, a Gaussian of the squared distance from its centre; exactly 0 from about `2^-115` down.
 ///
 /// That is far below any other term of a sum, and so far above the denormals that the products made of it seldom are
@@ -95,6 +98,9 @@ pub fn gaussian<L: Lanes>(s: L) -> L {
 /// [`gaussian`] for `s` up to [`FURTHEST`].
 #[inline(always)]
 fn gaussian_within<L: Lanes>(s: L) -> L {
+    if let Some(power) = (s * TO_EXPONENT).native_exp2() {
+        return L::keep(s.lt(L::splat(NATIVE_FURTHEST)), power);
+    }
     // Adding 2^23 rounds to an integer and leaves it in the low bits, biased as an exponent is. The bias is 12 short,
     // so that the exponent reaches 0, and with it the power, at -115 already; the polynomial makes up for it.
     let magic = L::splat(8_388_608.0 + LEAST_EXPONENT);
@@ -322,6 +328,9 @@ const LOG2_MANTISSA: [f32; 9] = [
 /// Logarithm to the base 2 of a normal number above 0; finite or NaN for any other.
 #[inline(always)]
 pub fn log2<L: Lanes>(x: L) -> L {
+    if let Some(log) = x.native_log2() {
+        return log;
+    }
     let (mantissa, exponent) = x.split_exponent();
     let f = (mantissa - 1.0).interleaved();
     polynomial(f, LOG2_MANTISSA).mul_add(f, exponent)

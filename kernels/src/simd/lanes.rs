@@ -100,6 +100,20 @@ pub trait Lanes:
     /// other gives finite numbers or NaN.
     #[must_use]
     fn split_exponent(self) -> (Self, Self);
+    /// `2^self`, where the target has it: on GPUs alone.
+    #[doc(hidden)]
+    #[inline(always)]
+    #[must_use]
+    fn native_exp2(self) -> Option<Self> {
+        None
+    }
+    /// The logarithm to the base 2, where the target has it.
+    #[doc(hidden)]
+    #[inline(always)]
+    #[must_use]
+    fn native_log2(self) -> Option<Self> {
+        None
+    }
     /// `self < other`, false for NaN.
     fn lt(self, other: Self) -> Self::Mask;
     /// Both masks.

@@ -116,6 +116,14 @@ impl<L: Lanes> Lanes for Pair<L> {
         (Self(m, n), Self(e, f))
     }
     #[inline(always)]
+    fn native_exp2(self) -> Option<Self> {
+        Some(Self(self.0.native_exp2()?, self.1.native_exp2()?))
+    }
+    #[inline(always)]
+    fn native_log2(self) -> Option<Self> {
+        Some(Self(self.0.native_log2()?, self.1.native_log2()?))
+    }
+    #[inline(always)]
     fn lt(self, other: Self) -> Self::Mask {
         (self.0.lt(other.0), self.1.lt(other.1))
     }

@@ -1,0 +1,452 @@
+//! Lanes that compute nothing: each operation is handed to a recorder, which makes a graph of the model.
+//!
+//! A model over [`Lanes`] has no control flow that depends on its data. Run once on these lanes it becomes a straight line of
+//! the operations of [`Op`]. Their results have the bits of one lane with [`Exact`], and those of a level that fuses with
+//! [`Fused`].
+
+use super::choice::Choice;
+use super::lanes::{
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, ROUND_EXPONENT, UPPER, difference_fused,
+    difference_split, sealed::Sealed,
+};
+use super::schedule::Schedule;
+use core::fmt;
+use core::marker::PhantomData;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+use core::panic::Location;
+
+/// An operation on numbers (32-bit floats) and masks (truth values), which reads up to three results `a`, `b`, `c`.
+/// Comparisons are false for NaN.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Op {
+    /// The number of these bits.
+    Constant(u32),
+    /// `a + b`.
+    Add,
+    /// `a - b`.
+    Sub,
+    /// `a * b`.
+    Mul,
+    /// `a / b`.
+    Div,
+    /// `a` with its sign turned.
+    Neg,
+    /// `a * b + c`, rounded once. Recorded by lanes that fuse alone.
+    MulAdd,
+    /// `2^a` of the target. Recorded with [`GpuNative`] alone.
+    Exp2,
+    /// Logarithm to the base 2 of the target. Recorded with [`GpuNative`] alone.
+    Log2,
+    /// Square root.
+    Sqrt,
+    /// `a` without its sign.
+    Abs,
+    /// `if a < b { a } else { b }`.
+    Min,
+    /// `if a > b { a } else { b }`.
+    Max,
+    /// `a` with its sign turned where that of `b` is set.
+    TimesSign,
+    /// `b` with its sign turned where the mask `a` is set.
+    NegateIf,
+    /// The bits of `a`, shifted left by 23.
+    ShiftLeft23,
+    /// The number `m` of [`Lanes::split_exponent`].
+    Mantissa,
+    /// The number `e` of [`Lanes::split_exponent`].
+    Exponent,
+    /// `a` with the lower 12 bits cleared.
+    Upper,
+    /// The mask `a < b`.
+    Less,
+    /// The mask `a >= b`.
+    AtLeast,
+    /// Both masks.
+    And,
+    /// Either mask.
+    Or,
+    /// The lanes that are not in the mask `a`.
+    Not,
+    /// `b` where the mask `a` is set, `c` elsewhere.
+    Select,
+}
+
+impl Op {
+    /// Number of results that the operation reads.
+    #[inline]
+    #[must_use]
+    pub const fn arity(self) -> usize {
+        match self {
+            Self::Constant(_) => 0,
+            Self::Neg
+            | Self::Exp2
+            | Self::Log2
+            | Self::Sqrt
+            | Self::Abs
+            | Self::ShiftLeft23
+            | Self::Mantissa
+            | Self::Exponent
+            | Self::Upper
+            | Self::Not => 1,
+            Self::MulAdd | Self::Select => 3,
+            _ => 2,
+        }
+    }
+
+    /// Whether the result is a mask.
+    #[inline]
+    #[must_use]
+    pub const fn is_mask(self) -> bool {
+        matches!(
+            self,
+            Self::Less | Self::AtLeast | Self::And | Self::Or | Self::Not
+        )
+    }
+
+    /// Exponent of [`Lanes::split_exponent`], biased, of the bits of a number.
+    #[inline]
+    #[must_use]
+    pub const fn biased_exponent(bits: u32) -> u32 {
+        bits.wrapping_add(ROUND_EXPONENT) >> 23
+    }
+
+    /// The operation on a number's bits, for those that read one number and take its bits apart.
+    #[inline]
+    #[must_use]
+    pub fn of_bits(self, bits: u32) -> Option<f32> {
+        Some(match self {
+            Self::ShiftLeft23 => f32::from_bits(bits << 23),
+            Self::Mantissa => f32::from_bits(
+                bits.wrapping_add(ONE)
+                    .wrapping_sub(Self::biased_exponent(bits) << 23),
+            ),
+            Self::Exponent => f32::from_bits(Self::biased_exponent(bits) | INTEGER) - INTEGER_BIAS,
+            Self::Upper => f32::from_bits(bits & UPPER),
+            _ => return None,
+        })
+    }
+}
+
+/// Receiver of operations, which names their results. The first is told before any that reads it.
+pub trait Recorder: 'static {
+    /// Records the operation `op` on the results named by `args`, of which it reads [`Op::arity`]. `at` is the line of the
+    /// model that asked for it.
+    fn record(op: Op, args: [u32; 3], at: &'static Location<'static>) -> u32;
+}
+
+/// The arithmetic of the target that a graph is for. Sealed.
+pub trait Arithmetic: Sealed + 'static {
+    /// Whether [`Lanes::mul_add`] is one operation.
+    const FUSES: bool;
+    /// Whether that operation rounds once on every target: Kahan's difference of products relies on it.
+    const ROUNDS_ONCE: bool;
+    /// Whether powers and logarithms to the base 2 are those of the target.
+    const NATIVE: bool;
+}
+
+macro_rules! arithmetics {
+    ($($(#[$doc:meta])* $name:ident: $fuses:literal, $rounds_once:literal, $native:literal;)*) => { $(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub enum $name {}
+
+        impl Sealed for $name {}
+        impl Arithmetic for $name {
+            const FUSES: bool = $fuses;
+            const ROUNDS_ONCE: bool = $rounds_once;
+            const NATIVE: bool = $native;
+        }
+    )* };
+}
+arithmetics! {
+    /// One lane: products and sums round apart.
+    Exact: false, false, false;
+    /// Levels that fuse: [`Op::MulAdd`] rounds once.
+    Fused: true, true, false;
+    /// GPUs, whose fused product may be two operations.
+    Gpu: true, false, false;
+    /// GPUs, with powers and logarithms of the target.
+    ///
+    /// - Accuracy: [`math::gaussian`](crate::model::math::gaussian) and [`math::log2`](crate::model::math::log2) have the error of
+    ///   the target's `exp2` and `log2`: in WGSL 3 + 2 |x| units in the last place, and 3 units or 2^-21 for the logarithm.
+    GpuNative: true, false, true;
+}
+
+/// The name of a number that a recorder received.
+pub struct Traced<R, A> {
+    name: u32,
+    kind: PhantomData<fn() -> (R, A)>,
+}
+
+/// The name of a mask.
+pub struct TracedMask<R> {
+    name: u32,
+    kind: PhantomData<fn() -> R>,
+}
+
+macro_rules! names {
+    ($($Name:ident [$($generics:ident),*] $letter:literal;)*) => { $(
+        impl<$($generics),*> Clone for $Name<$($generics),*> {
+            #[inline]
+            fn clone(&self) -> Self {
+                *self
+            }
+        }
+        impl<$($generics),*> Copy for $Name<$($generics),*> {}
+        impl<$($generics),*> fmt::Debug for $Name<$($generics),*> {
+            #[inline]
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "{}{}", $letter, self.name)
+            }
+        }
+        impl<$($generics),*> $Name<$($generics),*> {
+            /// The result of that name.
+            #[inline]
+            #[must_use]
+            pub const fn named(name: u32) -> Self {
+                Self { name, kind: PhantomData }
+            }
+            /// Its name.
+            #[inline]
+            #[must_use]
+            pub const fn name(self) -> u32 {
+                self.name
+            }
+        }
+    )* };
+}
+names! { Traced [R, A] 'x'; TracedMask [R] 'm'; }
+
+impl<R: Recorder, A: Arithmetic> Traced<R, A> {
+    #[track_caller]
+    fn op(op: Op, args: [u32; 3]) -> Self {
+        Self::named(R::record(op, args, Location::caller()))
+    }
+    #[track_caller]
+    fn halves(self) -> [Self; 2] {
+        let upper = Self::op(Op::Upper, [self.name, 0, 0]);
+        [upper, self - upper]
+    }
+}
+
+impl<R: Recorder> TracedMask<R> {
+    #[track_caller]
+    fn op(op: Op, a: u32, b: u32) -> Self {
+        Self::named(R::record(op, [a, b, 0], Location::caller()))
+    }
+}
+
+impl<R: Recorder, A: Arithmetic> Sealed for Traced<R, A> {}
+impl<R: Recorder, A: Arithmetic> Schedule for Traced<R, A> {}
+
+macro_rules! binary {
+    ($($Op:ident $op:ident;)*) => { $(
+        impl<R: Recorder, A: Arithmetic> $Op for Traced<R, A> {
+            type Output = Self;
+            #[inline]
+            #[track_caller]
+            fn $op(self, other: Self) -> Self {
+                Self::op(Op::$Op, [self.name, other.name, 0])
+            }
+        }
+    )* };
+}
+binary! { Add add; Sub sub; Mul mul; Div div; }
+
+/// Arithmetic with the same number for all lanes: as that of other lanes, but for the line that is recorded.
+macro_rules! by_number {
+    ($($Op:ident $op:ident;)*) => { $(
+        impl<R: Recorder, A: Arithmetic> $Op<f32> for Traced<R, A> {
+            type Output = Self;
+            #[inline]
+            #[track_caller]
+            fn $op(self, number: f32) -> Self {
+                $Op::$op(self, Self::splat(number))
+            }
+        }
+    )* };
+}
+by_number! { Add add; Sub sub; Mul mul; }
+
+impl<R: Recorder, A: Arithmetic> Neg for Traced<R, A> {
+    type Output = Self;
+    #[inline]
+    #[track_caller]
+    fn neg(self) -> Self {
+        Self::op(Op::Neg, [self.name, 0, 0])
+    }
+}
+
+impl<R: Recorder, A: Arithmetic> Lanes for Traced<R, A> {
+    type Mask = TracedMask<R>;
+    /// Where the chosen number is at least each of the three bounds.
+    type Index = [TracedMask<R>; 3];
+    type Stored = Self;
+    const FUSES: bool = A::FUSES;
+
+    #[inline]
+    #[track_caller]
+    fn splat(x: f32) -> Self {
+        Self::op(Op::Constant(x.to_bits()), [0; 3])
+    }
+    #[inline]
+    fn store(self) -> Self {
+        self
+    }
+    #[inline]
+    fn load(stored: &Self) -> Self {
+        *stored
+    }
+    #[inline]
+    #[track_caller]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        if A::FUSES {
+            Self::op(Op::MulAdd, [self.name, a.name, b.name])
+        } else {
+            self * a + b
+        }
+    }
+    #[inline]
+    #[track_caller]
+    fn mul_sub(self, a: Self, b: Self) -> Self {
+        if A::FUSES {
+            self.mul_add(a, -b)
+        } else {
+            self * a - b
+        }
+    }
+    #[inline]
+    #[track_caller]
+    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
+        if A::ROUNDS_ONCE {
+            difference_fused(a, b, c, d)
+        } else {
+            difference_split([a, b, c, d], [a, b, c, d].map(Self::halves))
+        }
+    }
+    #[inline]
+    #[track_caller]
+    fn native_exp2(self) -> Option<Self> {
+        A::NATIVE.then(|| Self::op(Op::Exp2, [self.name, 0, 0]))
+    }
+    #[inline]
+    #[track_caller]
+    fn native_log2(self) -> Option<Self> {
+        A::NATIVE.then(|| Self::op(Op::Log2, [self.name, 0, 0]))
+    }
+    #[inline]
+    #[track_caller]
+    fn sqrt(self) -> Self {
+        Self::op(Op::Sqrt, [self.name, 0, 0])
+    }
+    #[inline]
+    #[track_caller]
+    fn abs(self) -> Self {
+        Self::op(Op::Abs, [self.name, 0, 0])
+    }
+    #[inline]
+    #[track_caller]
+    fn split_exponent(self) -> (Self, Self) {
+        (
+            Self::op(Op::Mantissa, [self.name, 0, 0]),
+            Self::op(Op::Exponent, [self.name, 0, 0]),
+        )
+    }
+    #[inline]
+    #[track_caller]
+    fn min(self, other: Self) -> Self {
+        Self::op(Op::Min, [self.name, other.name, 0])
+    }
+    #[inline]
+    #[track_caller]
+    fn max(self, other: Self) -> Self {
+        Self::op(Op::Max, [self.name, other.name, 0])
+    }
+    #[inline]
+    #[track_caller]
+    fn times_sign(self, sign: Self) -> Self {
+        Self::op(Op::TimesSign, [self.name, sign.name, 0])
+    }
+    #[inline]
+    #[track_caller]
+    fn bits_shl_23(self) -> Self {
+        Self::op(Op::ShiftLeft23, [self.name, 0, 0])
+    }
+    #[inline]
+    #[track_caller]
+    fn negate(mask: TracedMask<R>, x: Self) -> Self {
+        Self::op(Op::NegateIf, [mask.name, x.name, 0])
+    }
+    #[inline]
+    #[track_caller]
+    fn select(mask: TracedMask<R>, yes: Self, no: Self) -> Self {
+        Self::op(Op::Select, [mask.name, yes.name, no.name])
+    }
+    #[inline]
+    #[track_caller]
+    fn lt(self, other: Self) -> TracedMask<R> {
+        TracedMask::op(Op::Less, self.name, other.name)
+    }
+    #[inline]
+    #[track_caller]
+    fn and(a: TracedMask<R>, b: TracedMask<R>) -> TracedMask<R> {
+        TracedMask::op(Op::And, a.name, b.name)
+    }
+    #[inline]
+    #[track_caller]
+    fn or(a: TracedMask<R>, b: TracedMask<R>) -> TracedMask<R> {
+        TracedMask::op(Op::Or, a.name, b.name)
+    }
+    #[inline]
+    #[track_caller]
+    fn swap(mask: TracedMask<R>, a: Self, b: Self) -> (Self, Self) {
+        (Self::select(mask, a, b), Self::select(mask, b, a))
+    }
+    #[inline]
+    #[track_caller]
+    fn keep(mask: TracedMask<R>, x: Self) -> Self {
+        Self::select(mask, x, Self::splat(0.0))
+    }
+}
+
+impl<R: Recorder, A: Arithmetic> Choice<Traced<R, A>> for [TracedMask<R>; 3] {
+    #[inline]
+    #[track_caller]
+    fn search(x: Traced<R, A>, bounds: [Traced<R, A>; 3], count: usize) -> Self {
+        // Never set: no number is at least NaN.
+        let none = Traced::<R, A>::splat(f32::NAN);
+        let at = |i: usize| if i < count { bounds[i] } else { none };
+        [at(0), at(1), at(2)].map(|bound| TracedMask::op(Op::AtLeast, x.name, bound.name))
+    }
+    #[inline]
+    fn masks(self) -> Self {
+        self
+    }
+    #[inline]
+    #[track_caller]
+    fn equals(self, entry: usize) -> TracedMask<R> {
+        let [one, two, three] = self.map(|mask| mask.name);
+        let but = |mask: u32, next: u32| {
+            let not = TracedMask::<R>::op(Op::Not, next, 0);
+            TracedMask::op(Op::And, mask, not.name)
+        };
+        match entry {
+            0 => TracedMask::op(Op::Not, one, 0),
+            1 => but(one, two),
+            2 => but(two, three),
+            _ => self[2],
+        }
+    }
+    #[inline]
+    #[track_caller]
+    fn to_number(self) -> Traced<R, A> {
+        self.choose([0.0, 1.0, 2.0, 3.0].map(Traced::splat))
+    }
+}
+
+impl<R: Recorder, A: Arithmetic> Broadcast<Self> for Traced<R, A> {
+    #[inline]
+    fn lanes(&self) -> Self {
+        *self
+    }
+}

@@ -1,0 +1,264 @@
+//! A function: a graph with arguments and results.
+
+use crate::graph::{Graph, Kind, Rounding, Value, apply};
+use crate::record::{Field, Record};
+
+/// Argument of a function.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Argument {
+    /// A record, and the name under which it is passed.
+    Record(String, Record),
+    /// A vector or a number.
+    Field(Field),
+}
+
+impl Argument {
+    /// Name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Record(name, _) => name,
+            Self::Field(field) => &field.name,
+        }
+    }
+
+    /// Count of its numbers.
+    #[must_use]
+    #[expect(clippy::len_without_is_empty, reason = "no argument is empty")]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Record(_, record) => record.len(),
+            Self::Field(field) => field.len(),
+        }
+    }
+
+    /// Each of its numbers, as every language writes it.
+    #[must_use]
+    pub fn places(&self) -> Vec<String> {
+        match self {
+            Self::Record(name, record) => {
+                let places = record.places();
+                places.map(|place| format!("{name}.{place}")).collect()
+            }
+            Self::Field(field) => field.places().collect(),
+        }
+    }
+}
+
+/// A function of numbers.
+#[derive(Clone, Debug)]
+pub struct Function {
+    name: String,
+    arguments: Vec<Argument>,
+    output: Record,
+    results: Vec<u32>,
+    graph: Graph,
+}
+
+impl Function {
+    /// The function of a graph, without what no result reads.
+    pub(crate) fn new(
+        name: String,
+        arguments: Vec<Argument>,
+        output: Record,
+        graph: &Graph,
+        results: &[u32],
+    ) -> Self {
+        let mut is_used = vec![false; graph.nodes().len()];
+        for result in results {
+            is_used[*result as usize] = true;
+        }
+        for (place, node) in graph.nodes().iter().enumerate().rev() {
+            if is_used[place] {
+                for operand in node.operands() {
+                    is_used[*operand as usize] = true;
+                }
+            }
+        }
+        let (mut kept, mut places) = (Graph::default(), vec![0; is_used.len()]);
+        for (node, place) in graph.nodes().iter().zip(0_u32..) {
+            if is_used[place as usize] {
+                let mut args = [0; 3];
+                for (arg, operand) in args.iter_mut().zip(node.operands()) {
+                    *arg = places[*operand as usize];
+                }
+                places[place as usize] = kept.copy(node, args, graph.line(place));
+            }
+        }
+        let results = results
+            .iter()
+            .map(|result| places[*result as usize])
+            .collect();
+        Self {
+            name,
+            arguments,
+            output,
+            results,
+            graph: kept,
+        }
+    }
+
+    /// Name without that of the model: `eval_hit`.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The arguments.
+    #[must_use]
+    pub fn arguments(&self) -> &[Argument] {
+        &self.arguments
+    }
+
+    /// Type of the result.
+    #[must_use]
+    pub const fn output(&self) -> &Record {
+        &self.output
+    }
+
+    /// Place in the graph of each number of the result.
+    #[must_use]
+    pub fn results(&self) -> &[u32] {
+        &self.results
+    }
+
+    /// The operations.
+    #[must_use]
+    pub const fn graph(&self) -> &Graph {
+        &self.graph
+    }
+
+    /// Each number that the function reads, in order.
+    #[must_use]
+    pub fn inputs(&self) -> Vec<String> {
+        self.arguments.iter().flat_map(Argument::places).collect()
+    }
+
+    /// The function with the fields `names` of its result alone, and no operation that the others need. `None` if a field
+    /// is none of the result.
+    #[must_use]
+    pub fn only(&self, names: &[&str]) -> Option<Self> {
+        let (mut fields, mut results) = (Vec::new(), Vec::new());
+        for name in names {
+            let field = self
+                .output
+                .fields
+                .iter()
+                .position(|field| field.name == *name)?;
+            let first: usize = self.output.fields[..field].iter().map(Field::len).sum();
+            let field = &self.output.fields[field];
+            results.extend(&self.results[first..first + field.len()]);
+            fields.push(field.clone());
+        }
+        let name = format!("{}_{}", self.name, names.join("_"));
+        let output = Record {
+            name: name.clone(),
+            fields,
+        };
+        Some(Self::new(
+            name,
+            self.arguments.clone(),
+            output,
+            &self.graph,
+            &results,
+        ))
+    }
+
+    /// Computes the results for the numbers `inputs`: what every translation has to give. [`Rounding`] is that of products
+    /// with sums which lanes that fuse record.
+    ///
+    /// # Panics
+    ///
+    /// If there are fewer inputs than the function reads.
+    #[must_use]
+    pub fn run(&self, inputs: &[f32], rounding: Rounding) -> Vec<f32> {
+        let mut values: Vec<Value> = Vec::with_capacity(self.graph.nodes().len());
+        for node in self.graph.nodes() {
+            values.push(match node.kind {
+                Kind::Input(place) => Value::Number(inputs[place as usize]),
+                Kind::Mask(mask) => Value::Mask(mask),
+                Kind::Op(op) => {
+                    let mut operands = [Value::Mask(false); 3];
+                    for (operand, place) in operands.iter_mut().zip(node.operands()) {
+                        *operand = values[*place as usize];
+                    }
+                    apply(op, &operands, rounding)
+                }
+            });
+        }
+        let number = |result: &u32| values[*result as usize].number();
+        self.results.iter().map(number).collect()
+    }
+
+    /// Count of operations.
+    #[must_use]
+    pub fn operations(&self) -> usize {
+        let nodes = self.graph.nodes().iter();
+        nodes.filter(|node| node.is_computed()).count()
+    }
+
+    /// The most numbers that wait at once in the order of [`schedule`](Self::schedule); arguments and constants are read where
+    /// they are used.
+    #[must_use]
+    pub fn waiting(&self) -> usize {
+        self.waiting_in(&self.schedule())
+    }
+
+    /// Order of the operations: that of the model, or each as late as possible, whichever lets fewer numbers wait.
+    #[must_use]
+    pub fn schedule(&self) -> Vec<u32> {
+        let traced: Vec<u32> = (0_u32..)
+            .zip(self.graph.nodes())
+            .filter(|(_, node)| node.is_computed())
+            .map(|(place, _)| place)
+            .collect();
+        let late = self.late();
+        if self.waiting_in(&late) < self.waiting_in(&traced) {
+            late
+        } else {
+            traced
+        }
+    }
+
+    /// Each operation right before the first that reads it.
+    fn late(&self) -> Vec<u32> {
+        let mut order = Vec::new();
+        let mut is_done = vec![false; self.graph.nodes().len()];
+        for result in &self.results {
+            let mut stack = vec![(*result, 0)];
+            while let Some((place, next)) = stack.pop() {
+                let node = self.graph.node(place);
+                if is_done[place as usize] || !node.is_computed() {
+                    continue;
+                }
+                if let Some(operand) = node.operands().get(next) {
+                    stack.extend([(place, next + 1), (*operand, 0)]);
+                } else {
+                    is_done[place as usize] = true;
+                    order.push(place);
+                }
+            }
+        }
+        order
+    }
+
+    fn waiting_in(&self, order: &[u32]) -> usize {
+        let mut last = vec![0; self.graph.nodes().len()];
+        for (step, place) in order.iter().enumerate() {
+            for operand in self.graph.node(*place).operands() {
+                last[*operand as usize] = step;
+            }
+        }
+        for result in &self.results {
+            last[*result as usize] = order.len();
+        }
+        let (mut waiting, mut most, mut ends) = (0_usize, 0, vec![0; order.len() + 1]);
+        for (step, place) in order.iter().enumerate() {
+            waiting += 1;
+            ends[last[*place as usize]] += 1;
+            waiting -= ends[step];
+            most = most.max(waiting);
+        }
+        most
+    }
+}

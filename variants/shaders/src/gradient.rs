@@ -1,0 +1,216 @@
+//! Derivatives, in reverse: one function returns the results, and the gradient of their weighted sum to every argument.
+
+use crate::function::{Argument, Function};
+use crate::graph::{Graph, Kind};
+use crate::record::{Field, Record};
+use core::f32::consts::{LN_2, LOG2_E};
+use hairis::simd::trace::Op;
+
+/// The least root that a derivative divides by: that of 0 is finite.
+const LEAST_ROOT: f32 = 1e-18;
+
+/// The reverse pass: nodes that are added, and the derivative to each node so far. None is 0.
+struct Pass {
+    graph: Graph,
+    adjoints: Vec<Option<u32>>,
+}
+
+impl Pass {
+    fn op<const N: usize>(&mut self, op: Op, operands: [u32; N]) -> u32 {
+        let mut args = [0; 3];
+        args[..N].copy_from_slice(&operands);
+        self.graph.op(op, args, None)
+    }
+
+    /// Adds `term` to the derivative to the node at `to`.
+    fn give(&mut self, to: u32, term: u32) {
+        if !self.reads_arguments(to) {
+            return;
+        }
+        let sum = match self.adjoints[to as usize] {
+            None => term,
+            Some(before) => self.op(Op::Add, [before, term]),
+        };
+        self.adjoints[to as usize] = Some(sum);
+    }
+
+    fn reads_arguments(&self, place: u32) -> bool {
+        let node = self.graph.node(place);
+        node.is_computed() || matches!(node.kind, Kind::Input(_))
+    }
+
+    fn give_product(&mut self, to: u32, by: u32, adjoint: u32) {
+        if self.reads_arguments(to) {
+            let term = self.op(Op::Mul, [adjoint, by]);
+            self.give(to, term);
+        }
+    }
+
+    /// Passes the derivative to the operation at `this` on to its operands.
+    ///
+    /// Three rules are no textbook's. A sum that rounds to an integer is a step. The mantissa of `x` is `x` over a power of two
+    /// that is constant around it. The upper half of a number has the derivative of the number, so that the rest has none.
+    fn pass_on(&mut self, op: Op, this: u32, args: [u32; 3], adjoint: u32) {
+        let [a, b, c] = args;
+        match op {
+            Op::Add if self.graph.rounds(a) || self.graph.rounds(b) => {}
+            Op::MulAdd if self.graph.rounds(c) => {}
+            Op::Add => {
+                self.give(a, adjoint);
+                self.give(b, adjoint);
+            }
+            Op::Sub => {
+                self.give(a, adjoint);
+                let minus = self.op(Op::Neg, [adjoint]);
+                self.give(b, minus);
+            }
+            Op::Mul | Op::MulAdd => {
+                self.give_product(a, b, adjoint);
+                self.give_product(b, a, adjoint);
+                if op == Op::MulAdd {
+                    self.give(c, adjoint);
+                }
+            }
+            Op::Div => {
+                let by = self.op(Op::Div, [adjoint, b]);
+                self.give(a, by);
+                let product = self.op(Op::Mul, [by, this]);
+                let minus = self.op(Op::Neg, [product]);
+                self.give(b, minus);
+            }
+            Op::Neg => {
+                let minus = self.op(Op::Neg, [adjoint]);
+                self.give(a, minus);
+            }
+            Op::Sqrt => {
+                let (half, least) = (self.graph.constant(0.5), self.graph.constant(LEAST_ROOT));
+                let root = self.op(Op::Max, [this, least]);
+                let slope = self.op(Op::Div, [half, root]);
+                self.give_product(a, slope, adjoint);
+            }
+            Op::Exp2 => {
+                let ln_2 = self.graph.constant(LN_2);
+                let slope = self.op(Op::Mul, [this, ln_2]);
+                self.give_product(a, slope, adjoint);
+            }
+            Op::Log2 => {
+                let log2_e = self.graph.constant(LOG2_E);
+                let slope = self.op(Op::Div, [log2_e, a]);
+                self.give_product(a, slope, adjoint);
+            }
+            Op::Abs => {
+                let term = self.op(Op::TimesSign, [adjoint, a]);
+                self.give(a, term);
+            }
+            Op::Min | Op::Max => {
+                let [low, high] = if op == Op::Min { [a, b] } else { [b, a] };
+                let mask = self.op(Op::Less, [low, high]);
+                self.give_either(mask, [a, b], adjoint);
+            }
+            Op::TimesSign => {
+                let term = self.op(Op::TimesSign, [adjoint, b]);
+                self.give(a, term);
+            }
+            Op::NegateIf => {
+                let term = self.op(Op::NegateIf, [a, adjoint]);
+                self.give(b, term);
+            }
+            Op::Mantissa => {
+                let slope = self.op(Op::Div, [this, a]);
+                self.give_product(a, slope, adjoint);
+            }
+            Op::Upper => self.give(a, adjoint),
+            Op::Select => self.give_either(a, [b, c], adjoint),
+            Op::Constant(_)
+            | Op::ShiftLeft23
+            | Op::Exponent
+            | Op::Less
+            | Op::AtLeast
+            | Op::And
+            | Op::Or
+            | Op::Not => {}
+        }
+    }
+
+    /// Passes the derivative to the first where the mask is set, to the second elsewhere.
+    fn give_either(&mut self, mask: u32, [yes, no]: [u32; 2], adjoint: u32) {
+        let zero = self.graph.constant(0.0);
+        let to_yes = self.op(Op::Select, [mask, adjoint, zero]);
+        let to_no = self.op(Op::Select, [mask, zero, adjoint]);
+        self.give(yes, to_yes);
+        self.give(no, to_no);
+    }
+}
+
+impl Function {
+    /// The function and its gradient, for one weight per number of the result.
+    ///
+    /// - Arguments: those of the function, and `weights`, of the type of the result.
+    /// - Result: the fields of the result, and for each number of the arguments the derivative to it of the sum of
+    ///   `weight * result`, in fields named `d_material_...`, `d_wo`, `d_h`.
+    ///
+    /// Choices are taken as constant: the derivative is that of the branch. `wo` and `wi` of unit length, within 1e-5, are not
+    /// normalised: the derivative is right along the sphere, and arbitrary across it.
+    ///
+    /// # Panics
+    ///
+    /// If there are 2^32 operations.
+    #[must_use]
+    pub fn gradient(&self) -> Self {
+        let inputs = self.inputs().len();
+        let mut pass = Pass {
+            graph: self.graph().clone(),
+            adjoints: vec![None; self.graph().nodes().len()],
+        };
+        for (result, place) in self.results().iter().zip(inputs..) {
+            let place = u32::try_from(place).expect("a function has less than 2^32 arguments");
+            let weight = pass.graph.input(place);
+            pass.give(*result, weight);
+        }
+        let mut derivatives = vec![None; inputs];
+        for place in (0..pass.adjoints.len()).rev() {
+            let Some(adjoint) = pass.adjoints[place] else {
+                continue;
+            };
+            let this = u32::try_from(place).expect("a graph has less than 2^32 nodes");
+            let node = *pass.graph.node(this);
+            let mut args = [0; 3];
+            args[..node.operands().len()].copy_from_slice(node.operands());
+            match node.kind {
+                Kind::Input(input) => derivatives[input as usize] = Some(adjoint),
+                Kind::Mask(_) => {}
+                Kind::Op(op) => pass.pass_on(op, this, args, adjoint),
+            }
+        }
+        let zero = pass.graph.constant(0.0);
+        let mut results = self.results().to_vec();
+        results.extend(derivatives.into_iter().map(|place| place.unwrap_or(zero)));
+
+        let name = format!("{}_gradient", self.name());
+        let mut output = Record {
+            name: name.clone(),
+            fields: self.output().fields.clone(),
+        };
+        for argument in self.arguments() {
+            match argument {
+                Argument::Field(field) => {
+                    let name = format!("d_{}", field.name);
+                    output.fields.push(Field::new(name, field.shape));
+                }
+                Argument::Record(name, record) => {
+                    output.fields.extend(
+                        record.fields.iter().map(|field| {
+                            Field::new(format!("d_{name}_{}", field.name), field.shape)
+                        }),
+                    );
+                }
+            }
+        }
+        let mut arguments = self.arguments().to_vec();
+        arguments.push(Argument::Record(
+            "weights".to_owned(),
+            self.output().clone(),
+        ));
+        Self::new(name, arguments, output, &pass.graph, &results)
+    }
+}

@@ -1,0 +1,370 @@
+//! The graph that a traced model leaves: operations in the order of their computation, each recorded once.
+
+use core::cell::RefCell;
+use core::panic::Location;
+use hairis::simd::trace::{Arithmetic, Op, Recorder, Traced};
+use std::collections::HashMap;
+
+/// What a node is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// An argument of the function, by its place.
+    Input(u32),
+    /// An operation.
+    Op(Op),
+    /// A mask that is the same for all inputs.
+    Mask(bool),
+}
+
+/// A node, and the nodes that it reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Node {
+    /// What it is.
+    pub kind: Kind,
+    /// Its operands: see [`operands`](Self::operands).
+    args: [u32; 3],
+}
+
+impl Node {
+    /// Places of the operands in the graph.
+    #[must_use]
+    pub fn operands(&self) -> &[u32] {
+        match self.kind {
+            Kind::Op(op) => &self.args[..op.arity()],
+            Kind::Input(_) | Kind::Mask(_) => &[],
+        }
+    }
+
+    /// Whether it is computed: neither an argument nor a constant.
+    #[must_use]
+    pub fn is_computed(&self) -> bool {
+        !self.operands().is_empty()
+    }
+
+    /// Whether its value is a mask.
+    #[must_use]
+    pub fn is_mask(&self) -> bool {
+        match self.kind {
+            Kind::Op(op) => op.is_mask(),
+            Kind::Mask(_) => true,
+            Kind::Input(_) => false,
+        }
+    }
+}
+
+/// A number or a mask.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Value {
+    Number(f32),
+    Mask(bool),
+}
+
+impl Value {
+    pub(crate) fn number(self) -> f32 {
+        match self {
+            Self::Number(x) => x,
+            Self::Mask(_) => unreachable!("a number was recorded here"),
+        }
+    }
+    fn mask(self) -> bool {
+        match self {
+            Self::Mask(x) => x,
+            Self::Number(_) => unreachable!("a mask was recorded here"),
+        }
+    }
+}
+
+/// How [`Op::MulAdd`] rounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rounding {
+    /// Once: the operation fuses.
+    Once,
+    /// Twice: targets may split it.
+    Twice,
+}
+
+/// Result of an operation: the bits of one lane.
+pub(crate) fn apply(op: Op, v: &[Value], rounding: Rounding) -> Value {
+    let a = || v[0].number();
+    let b = || v[1].number();
+    let number = Value::Number;
+    let bits = |x: u32| number(f32::from_bits(x));
+    match op {
+        Op::Constant(x) => bits(x),
+        Op::Add => number(a() + b()),
+        Op::Sub => number(a() - b()),
+        Op::Mul => number(a() * b()),
+        Op::Div => number(a() / b()),
+        Op::Neg => number(-a()),
+        Op::MulAdd => number(match rounding {
+            Rounding::Once => a().mul_add(b(), v[2].number()),
+            Rounding::Twice => a() * b() + v[2].number(),
+        }),
+        Op::Exp2 => number(a().exp2()),
+        Op::Log2 => number(a().log2()),
+        Op::Sqrt => number(a().sqrt()),
+        Op::Abs => number(a().abs()),
+        Op::Min => number(if a() < b() { a() } else { b() }),
+        Op::Max => number(if a() > b() { a() } else { b() }),
+        Op::TimesSign => bits(a().to_bits() ^ (b().to_bits() & (1 << 31))),
+        Op::NegateIf => bits(b().to_bits() ^ (u32::from(v[0].mask()) << 31)),
+        Op::ShiftLeft23 | Op::Mantissa | Op::Exponent | Op::Upper => number(
+            op.of_bits(a().to_bits())
+                .expect("the operation takes bits apart"),
+        ),
+        Op::Less => Value::Mask(a() < b()),
+        Op::AtLeast => Value::Mask(a() >= b()),
+        Op::And => Value::Mask(v[0].mask() & v[1].mask()),
+        Op::Or => Value::Mask(v[0].mask() | v[1].mask()),
+        Op::Not => Value::Mask(!v[0].mask()),
+        Op::Select => v[if v[0].mask() { 1 } else { 2 }],
+    }
+}
+
+/// Line of a model's source.
+pub type Line = &'static Location<'static>;
+
+/// Nodes, none of which occurs twice. Operands come before the nodes that read them.
+#[derive(Clone, Debug, Default)]
+pub struct Graph {
+    nodes: Vec<Node>,
+    /// Line of the model that first asked for each node.
+    lines: Vec<Option<Line>>,
+    known: HashMap<Node, u32>,
+}
+
+impl Graph {
+    /// All nodes.
+    #[must_use]
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Node at a place.
+    #[must_use]
+    pub fn node(&self, place: u32) -> &Node {
+        &self.nodes[place as usize]
+    }
+
+    /// Line of the model that first asked for the node at a place; none for inputs and derivatives.
+    #[must_use]
+    pub fn line(&self, place: u32) -> Option<Line> {
+        self.lines[place as usize]
+    }
+
+    /// Constant number of the node at a place.
+    #[must_use]
+    pub fn number(&self, place: u32) -> Option<f32> {
+        match self.node(place).kind {
+            Kind::Op(Op::Constant(bits)) => Some(f32::from_bits(bits)),
+            _ => None,
+        }
+    }
+
+    /// Whether adding the node at a place rounds to an integer: constants from 2^23 on, below 2^24.
+    #[must_use]
+    pub fn rounds(&self, place: u32) -> bool {
+        let integers = 8_388_608.0..16_777_216.0;
+        self.number(place).is_some_and(|x| integers.contains(&x))
+    }
+
+    fn mask(&self, place: u32) -> Option<bool> {
+        match self.node(place).kind {
+            Kind::Mask(mask) => Some(mask),
+            _ => None,
+        }
+    }
+
+    /// Adds a node, or finds it.
+    fn push(&mut self, node: Node, line: Option<Line>) -> u32 {
+        if let Some(known) = self.known.get(&node) {
+            return *known;
+        }
+        let place = u32::try_from(self.nodes.len()).expect("a graph has less than 2^32 nodes");
+        self.nodes.push(node);
+        self.lines.push(line);
+        self.known.insert(node, place);
+        place
+    }
+
+    /// Adds the argument at `place` of a function.
+    pub(crate) fn input(&mut self, place: u32) -> u32 {
+        let kind = Kind::Input(place);
+        self.push(Node { kind, args: [0; 3] }, None)
+    }
+
+    /// Adds a constant.
+    pub(crate) fn constant(&mut self, x: f32) -> u32 {
+        let kind = Kind::Op(Op::Constant(x.to_bits()));
+        self.push(Node { kind, args: [0; 3] }, None)
+    }
+
+    fn constant_mask(&mut self, mask: bool) -> u32 {
+        let kind = Kind::Mask(mask);
+        self.push(Node { kind, args: [0; 3] }, None)
+    }
+
+    /// Adds a node of another graph, whose operands are here at `args`.
+    pub(crate) fn copy(&mut self, node: &Node, args: [u32; 3], line: Option<Line>) -> u32 {
+        let kind = node.kind;
+        self.push(Node { kind, args }, line)
+    }
+
+    /// Adds an operation. Constants are computed, and what changes no bit of a number is left out. NaN stays NaN.
+    pub(crate) fn op(&mut self, op: Op, args: [u32; 3], line: Option<Line>) -> u32 {
+        if let Op::Constant(bits) = op {
+            return self.constant(f32::from_bits(bits));
+        }
+        let mut node = Node {
+            kind: Kind::Op(op),
+            args: [0; 3],
+        };
+        node.args[..op.arity()].copy_from_slice(&args[..op.arity()]);
+        if let Some(values) = self.constants(node.operands()) {
+            return match apply(op, &values, Rounding::Once) {
+                Value::Number(x) => self.constant(x),
+                Value::Mask(x) => self.constant_mask(x),
+            };
+        }
+        if let Some(place) = self.folded(op, node.args) {
+            return place;
+        }
+        if matches!(op, Op::Add | Op::Mul | Op::MulAdd | Op::And | Op::Or) {
+            node.args[..2].sort_unstable();
+        }
+        self.push(node, line)
+    }
+
+    fn constants(&self, places: &[u32]) -> Option<Vec<Value>> {
+        let constant = |place: &u32| {
+            let number = self.number(*place).map(Value::Number);
+            number.or_else(|| self.mask(*place).map(Value::Mask))
+        };
+        places.iter().map(constant).collect()
+    }
+
+    /// Node that has the value of an operation already.
+    fn folded(&mut self, op: Op, [a, b, c]: [u32; 3]) -> Option<u32> {
+        let is = |graph: &Self, place: u32, x: f32| {
+            graph.number(place).map(f32::to_bits) == Some(x.to_bits())
+        };
+        let twice = |graph: &Self| graph.node(a).kind == Kind::Op(op);
+        match op {
+            Op::Mul if is(self, a, 1.0) => Some(b),
+            Op::Mul | Op::Div if is(self, b, 1.0) => Some(a),
+            Op::Sub if is(self, b, 0.0) => Some(a),
+            Op::Add if is(self, b, -0.0) => Some(a),
+            Op::Add if is(self, a, -0.0) => Some(b),
+            // No number is at least NaN, nor less.
+            Op::AtLeast | Op::Less
+                if [a, b]
+                    .iter()
+                    .any(|x| self.number(*x).is_some_and(f32::is_nan)) =>
+            {
+                Some(self.constant_mask(false))
+            }
+            Op::Neg | Op::Not if twice(self) => Some(self.node(a).operands()[0]),
+            Op::Select if b == c => Some(b),
+            Op::Select => self.mask(a).map(|mask| if mask { b } else { c }),
+            Op::And | Op::Or if a == b => Some(a),
+            Op::And | Op::Or => {
+                let decides = op == Op::Or;
+                match (self.mask(a), self.mask(b)) {
+                    (Some(mask), _) => Some(if mask == decides { a } else { b }),
+                    (_, Some(mask)) => Some(if mask == decides { b } else { a }),
+                    _ => None,
+                }
+            }
+            _ => None,
+        }
+    }
+}
+
+thread_local! {
+    static GRAPH: RefCell<Graph> = RefCell::default();
+}
+
+/// Recorder into the graph of this thread.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Tape {}
+
+impl Recorder for Tape {
+    fn record(op: Op, args: [u32; 3], at: Line) -> u32 {
+        GRAPH.with_borrow_mut(|graph| graph.op(op, args, Some(at)))
+    }
+}
+
+/// A lane that is recorded, for a target of this arithmetic.
+pub(crate) type Lane<A> = Traced<Tape, A>;
+
+/// The next argument of the function that is recorded.
+pub(crate) fn input<A: Arithmetic>(next: &mut u32) -> Lane<A> {
+    let place = *next;
+    *next += 1;
+    Lane::named(GRAPH.with_borrow_mut(|graph| graph.input(place)))
+}
+
+/// Records `body`. Returns the graph, and the result of `body`.
+pub(crate) fn record<T>(body: impl FnOnce() -> T) -> (Graph, T) {
+    GRAPH.set(Graph::default());
+    let result = body();
+    (GRAPH.take(), result)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn graph() -> (Graph, [u32; 4]) {
+        let mut graph = Graph::default();
+        let inputs = [0, 1].map(|place| graph.input(place));
+        let masks =
+            [[0, 1], [1, 0]].map(|[a, b]| graph.op(Op::Less, [inputs[a], inputs[b], 0], None));
+        (graph, [inputs[0], inputs[1], masks[0], masks[1]])
+    }
+
+    #[test]
+    fn equal_operations_are_one() {
+        let (mut graph, [x, y, ..]) = graph();
+        let sum = graph.op(Op::Add, [x, y, 0], None);
+        assert_eq!(graph.op(Op::Add, [y, x, 9], None), sum, "sums commute");
+        let difference = graph.op(Op::Sub, [x, y, 0], None);
+        assert_ne!(graph.op(Op::Sub, [y, x, 0], None), difference);
+    }
+
+    #[test]
+    fn folding_changes_no_bit() {
+        let (mut graph, [x, y, m, n]) = graph();
+        let [zero, minus_zero, one, nan] =
+            [0.0, -0.0, 1.0, f32::NAN].map(|number| graph.constant(number));
+        let [yes, no] = [true, false].map(|mask| graph.constant_mask(mask));
+        for (op, args, folded) in [
+            (Op::Mul, [one, x, 0], x),
+            (Op::Mul, [x, one, 0], x),
+            (Op::Div, [x, one, 0], x),
+            (Op::Sub, [x, zero, 0], x),
+            (Op::Add, [x, minus_zero, 0], x),
+            (Op::Select, [m, y, y], y),
+            (Op::Select, [yes, x, y], x),
+            (Op::Select, [no, x, y], y),
+            (Op::AtLeast, [x, nan, 0], no),
+            (Op::And, [m, yes, 0], m),
+            (Op::And, [m, no, 0], no),
+            (Op::Or, [m, yes, 0], yes),
+            (Op::Or, [no, m, 0], m),
+            (Op::And, [n, n, 0], n),
+        ] {
+            assert_eq!(graph.op(op, args, None), folded, "{op:?} {args:?}");
+        }
+        // -0 + 0 is 0, 0 - x is not -x, NaN * 0 is NaN.
+        for (op, args) in [
+            (Op::Add, [x, zero, 0]),
+            (Op::Sub, [x, minus_zero, 0]),
+            (Op::Sub, [zero, x, 0]),
+            (Op::Mul, [x, zero, 0]),
+        ] {
+            let place = graph.op(op, args, None);
+            assert_eq!(graph.node(place).kind, Kind::Op(op), "{args:?} is computed");
+        }
+    }
+}

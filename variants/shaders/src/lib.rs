@@ -1,0 +1,36 @@
+//! The models of hairis as source of other languages.
+//!
+//! A [`Model`](hairis::model::Model) is run once on lanes that record. The graph that it leaves is a [`Function`], which
+//! computes the bits of one lane, is printed in a [`Language`], and has a [`gradient`](Function::gradient).
+//!
+//! ```
+//! use hairis_shaders::{Call, Language, Program, Target, print};
+//! use hairis_variants::KajiyaKay;
+//!
+//! let program = Program::of::<KajiyaKay>(Target::Exact);
+//! let header = print(&program, Language::C);
+//! assert!(header.contains("hairis_kajiya_kay_eval_hit(HairisKajiyaKayMaterial material, HairisVec3 wo, float h"));
+//! assert!(program.function(Call::Eval).operations() < program.function(Call::EvalHit).operations());
+//! ```
+
+mod double;
+mod function;
+mod gradient;
+mod graph;
+mod print;
+mod program;
+mod record;
+#[cfg(feature = "spirv")]
+pub mod spirv;
+
+pub use function::{Argument, Function};
+pub use graph::{Graph, Kind, Line, Node, Rounding};
+pub use print::{Language, driver, print};
+pub use program::{Call, Program, Target};
+pub use record::{Field, Record, Shape, numbers};
+
+/// Examples of the package's README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+#[derive(Debug)]
+pub struct Readme;

@@ -1,0 +1,330 @@
+//! Source of a program in other languages: one visitor, and a table of operations per language.
+
+mod driver;
+mod operations;
+mod syntax;
+
+use crate::function::{Argument, Function};
+use crate::graph::{Kind, Line};
+use crate::program::{Call, Program};
+use crate::record::{Field, Record, Shape};
+use core::fmt::Write as _;
+pub use driver::driver;
+use hairis::simd::trace::Op;
+use operations::{template, write_template};
+use syntax::head;
+
+/// A language that programs are printed in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Language {
+    /// C99, C++, CUDA and `OpenCL` C, in one header.
+    C,
+    /// WGSL, of WebGPU.
+    Wgsl,
+    /// GLSL from version 4.00 or 3.20 ES.
+    Glsl,
+    /// HLSL from shader model 5.
+    Hlsl,
+    /// The Metal shading language.
+    Msl,
+}
+
+impl Language {
+    /// Every language.
+    pub const ALL: [Self; 5] = [Self::C, Self::Wgsl, Self::Glsl, Self::Hlsl, Self::Msl];
+
+    /// Whether compilers may take sums apart, and the language has no word against it.
+    const fn takes_sums_apart(self) -> bool {
+        matches!(self, Self::Wgsl | Self::Msl)
+    }
+
+    /// Type of a form of field, and what follows its name.
+    fn shape(self, shape: Shape) -> (String, String) {
+        match (self, shape) {
+            (Self::Wgsl, Shape::Number) => ("f32".to_owned(), String::new()),
+            (Self::Wgsl, Shape::Array(len)) => (format!("array<f32, {len}>"), String::new()),
+            (_, Shape::Number) => ("float".to_owned(), String::new()),
+            (_, Shape::Array(len)) => ("float".to_owned(), format!("[{len}]")),
+            (_, Shape::Vector) => (self.vector().to_owned(), String::new()),
+        }
+    }
+
+    const fn vector(self) -> &'static str {
+        match self {
+            Self::C => "HairisVec3",
+            Self::Wgsl => "vec3<f32>",
+            Self::Glsl => "vec3",
+            Self::Hlsl | Self::Msl => "float3",
+        }
+    }
+
+    /// A number or a mask that is not assigned again.
+    fn binding(self, is_mask: bool) -> &'static str {
+        match (self, is_mask) {
+            (Self::Wgsl, _) => "let",
+            (Self::C, true) => "const int",
+            (Self::C | Self::Msl, false) => "const float",
+            (Self::Msl, true) => "const bool",
+            // Compilers keep the order of arithmetic whose results are precise.
+            (Self::Glsl | Self::Hlsl, false) => "precise float",
+            (Self::Glsl | Self::Hlsl, true) => "bool",
+        }
+    }
+
+    /// A number as a literal that every compiler reads as this very float. None has one of infinity or NaN.
+    fn literal(self, x: f32, prefix: &str) -> String {
+        if !x.is_finite() {
+            return format!("{prefix}number(0x{:08x}u)", x.to_bits());
+        }
+        let short = format!("{x:?}");
+        let is_exact = short.parse::<f64>() == Ok(f64::from(x));
+        if is_exact && !short.contains('e') {
+            format!("{short}f")
+        } else if self == Self::Wgsl {
+            // Decimal digits above those of the largest float are refused there.
+            hexadecimal(x)
+        } else {
+            // Nine digits, as fewer could be rounded twice.
+            format!("{x:.8e}f")
+        }
+    }
+}
+
+/// Digits of a normal number to the base 16.
+fn hexadecimal(x: f32) -> String {
+    let (sign, bits) = (if x < 0.0 { "-" } else { "" }, x.abs().to_bits());
+    if bits >> 23 == 0 {
+        return format!("{sign}0x{:x}p-149f", bits);
+    }
+    let fraction = format!("{:06x}", (bits & 0x7f_ffff) << 1);
+    let fraction = fraction.trim_end_matches('0');
+    let dot = if fraction.is_empty() { "" } else { "." };
+    let exponent = i64::from(bits >> 23) - 127;
+    format!("{sign}0x1{dot}{fraction}p{exponent:+}f")
+}
+
+/// Names that begin as the model's: `hairis_gaussian_`.
+fn prefix(program: &Program) -> String {
+    format!("hairis_{}_", program.name())
+}
+
+/// Name of a type: `HairisGaussianMaterial`.
+fn type_name(program: &Program, record: &Record) -> String {
+    let name = format!("hairis_{}_{}", program.name(), record.name);
+    let capital = |word: &str| {
+        let (first, rest) = word.split_at(word.len().min(1));
+        first.to_uppercase() + rest
+    };
+    name.split('_').map(capital).collect()
+}
+
+/// Prints a program: its types, materials and functions, which need no other file.
+#[must_use]
+pub fn print(program: &Program, language: Language) -> String {
+    let mut out = head(program, language);
+    let mut known = Vec::new();
+    let materials = program.materials().iter();
+    for function in materials.chain(program.functions()) {
+        let records = function
+            .arguments()
+            .iter()
+            .filter_map(|argument| match argument {
+                Argument::Record(_, record) => Some(record),
+                Argument::Field(_) => None,
+            });
+        for record in records.chain([function.output()]) {
+            if !known.contains(&record) {
+                declare(&mut out, program, language, record);
+                known.push(record);
+            }
+        }
+        Body::new(program, language, function).print(&mut out);
+    }
+    if language == Language::C {
+        out.push_str("#endif\n");
+    }
+    out
+}
+
+fn declare(out: &mut String, program: &Program, language: Language, record: &Record) {
+    let name = type_name(program, record);
+    if record
+        .fields
+        .iter()
+        .all(|field| field.shape != Shape::Vector)
+    {
+        let numbers = record.len();
+        out.push_str(&format!("// {numbers} floats in a row.\n"));
+    }
+    let (open, close) = match language {
+        Language::C => (format!("typedef struct {name} {{"), format!("}} {name};")),
+        Language::Wgsl => (format!("struct {name} {{"), "}".to_owned()),
+        _ => (format!("struct {name} {{"), "};".to_owned()),
+    };
+    out.push_str(&open);
+    out.push('\n');
+    for Field { name, shape } in &record.fields {
+        let (of, after) = language.shape(*shape);
+        out.push_str(&match language {
+            Language::Wgsl => format!("    {name}: {of},\n"),
+            _ => format!("    {of} {name}{after};\n"),
+        });
+    }
+    out.push_str(&close);
+    out.push_str("\n\n");
+}
+
+/// Place of a line in its package, without the folders above: `hair/view.rs:88`.
+fn place(line: Line) -> String {
+    let file = line.file().replace('\\', "/");
+    let file = file
+        .rsplit_once("/src/")
+        .map_or(file.as_str(), |(_, file)| file);
+    format!("{file}:{}", line.line())
+}
+
+/// A function that is printed.
+struct Body<'a> {
+    program: &'a Program,
+    language: Language,
+    function: &'a Function,
+    inputs: Vec<String>,
+    prefix: String,
+}
+
+impl<'a> Body<'a> {
+    fn new(program: &'a Program, language: Language, function: &'a Function) -> Self {
+        Self {
+            program,
+            language,
+            function,
+            inputs: function.inputs(),
+            prefix: prefix(program),
+        }
+    }
+
+    fn print(&self, out: &mut String) {
+        self.signature(out);
+        let mut file = "";
+        for place in self.function.schedule() {
+            self.comment(out, place, &mut file);
+            let value = self.value(place);
+            let (binding, name) = (self.binding(place), self.name(place));
+            let _ = writeln!(out, "    {binding} {name} = {value};");
+        }
+        let results = self.function.results();
+        for (place, result) in self.function.output().places().zip(results) {
+            let _ = writeln!(out, "    result.{place} = {};", self.name(*result));
+        }
+        out.push_str("    return result;\n}\n\n");
+    }
+
+    fn signature(&self, out: &mut String) {
+        let call = (Call::ALL.iter()).find(|call| call.name() == self.function.name());
+        if let Some(call) = call {
+            let _ = writeln!(out, "// {}", call.purpose());
+        }
+        let of = type_name(self.program, self.function.output());
+        let argument = |argument: &Argument| {
+            let of = match argument {
+                Argument::Record(_, record) => type_name(self.program, record),
+                Argument::Field(field) => self.language.shape(field.shape).0,
+            };
+            match self.language {
+                Language::Wgsl => format!("{}: {of}", argument.name()),
+                _ => format!("{of} {}", argument.name()),
+            }
+        };
+        let arguments: Vec<_> = self.function.arguments().iter().map(argument).collect();
+        let (name, mut arguments) = (self.function.name(), arguments.join(", "));
+        let prefix = &self.prefix;
+        let (signature, result) = match self.language {
+            Language::Wgsl => (
+                format!("fn {prefix}{name}({arguments}) -> {of} {{"),
+                format!("var result: {of};"),
+            ),
+            language => {
+                if language == Language::C && arguments.is_empty() {
+                    arguments.push_str("void");
+                }
+                (
+                    format!("HAIRIS_FN {of} {prefix}{name}({arguments}) {{"),
+                    format!("{of} result;"),
+                )
+            }
+        };
+        let _ = writeln!(out, "{signature}\n    {result}");
+        if self.language == Language::C {
+            for argument in self.unused() {
+                let _ = writeln!(out, "    (void){argument};");
+            }
+        }
+    }
+
+    /// Arguments that the function does not read: a model of the far field does not read `h`.
+    fn unused(&self) -> Vec<&str> {
+        let nodes = self.function.graph().nodes();
+        let mut unused = Vec::new();
+        let mut first = 0;
+        for argument in self.function.arguments() {
+            let here = first..first + argument.len();
+            let is_read =
+                |kind: Kind| matches!(kind, Kind::Input(i) if here.contains(&(i as usize)));
+            if !nodes.iter().any(|node| is_read(node.kind)) {
+                unused.push(argument.name());
+            }
+            first = here.end;
+        }
+        unused
+    }
+
+    /// Names the model's source file where it changes, and its line.
+    fn comment(&self, out: &mut String, place_of_node: u32, file: &mut &'static str) {
+        let Some(line) = self.function.graph().line(place_of_node) else {
+            return;
+        };
+        // Vectors and choices: parts of what is around them.
+        let is_model = !line.file().contains("simd") && !line.file().ends_with("frame.rs");
+        if is_model && line.file() != *file {
+            *file = line.file();
+            let _ = writeln!(out, "    // {}", place(line));
+        }
+    }
+
+    fn binding(&self, place: u32) -> &'static str {
+        let is_mask = self.function.graph().node(place).is_mask();
+        self.language.binding(is_mask)
+    }
+
+    fn name(&self, place: u32) -> String {
+        let node = self.function.graph().node(place);
+        match node.kind {
+            Kind::Op(Op::Constant(bits)) => {
+                self.language.literal(f32::from_bits(bits), &self.prefix)
+            }
+            Kind::Mask(mask) if self.language == Language::C => i32::from(mask).to_string(),
+            Kind::Mask(mask) => mask.to_string(),
+            Kind::Input(input) => self.inputs[input as usize].clone(),
+            Kind::Op(_) => format!("{}{place}", if node.is_mask() { 'm' } else { 'x' }),
+        }
+    }
+
+    fn value(&self, place: u32) -> String {
+        let graph = self.function.graph();
+        let node = graph.node(place);
+        let Kind::Op(op) = node.kind else {
+            unreachable!("what is scheduled is computed")
+        };
+        let operands = node.operands();
+        let rounds = operands.iter().position(|operand| graph.rounds(*operand));
+        let is_infinite = |operand: u32| graph.number(operand) == Some(f32::INFINITY);
+        let template = template(
+            self.language,
+            op,
+            rounds,
+            op == Op::Less && is_infinite(operands[1]),
+        );
+        let names: Vec<_> = operands.iter().map(|operand| self.name(*operand)).collect();
+        write_template(template, &self.prefix, &names)
+    }
+}

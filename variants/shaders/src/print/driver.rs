@@ -1,0 +1,128 @@
+//! Entry points that run functions over arrays of numbers.
+
+use super::{Language, prefix, type_name};
+use crate::function::{Argument, Function};
+use crate::program::Program;
+use crate::record::Field;
+
+/// Entry points for the functions of a program, to follow [`print`](super::print) in one file. Each reads an array of floats,
+/// the arguments of one call after the other, and writes one of the results.
+///
+/// - WGSL: a compute shader per function, by the function's name, over buffers 0 (read) and 1 (written) of group 0;
+///   workgroups of 64.
+/// - GLSL: `main` of the last function alone, over the same buffers of a Vulkan shader.
+/// - C: `main` takes the name of a function, reads standard input and writes standard output.
+///
+/// # Panics
+///
+/// If there is none for the language.
+#[must_use]
+pub fn driver(program: &Program, language: Language) -> String {
+    match language {
+        Language::C => c(program),
+        Language::Wgsl => wgsl(program),
+        Language::Glsl => glsl(program),
+        Language::Hlsl | Language::Msl => panic!("no driver runs {language:?}"),
+    }
+}
+
+/// Statements that read the arguments from `i * count` on, call the function, and write its result.
+fn statements(program: &Program, language: Language, function: &Function) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut from = 0;
+    let count: usize = function.arguments().iter().map(Argument::len).sum();
+    let variable = |of: &str, name: &str| match language {
+        Language::Wgsl => format!("var a_{name}: {of};"),
+        _ => format!("{of} a_{name};"),
+    };
+    for argument in function.arguments() {
+        let name = argument.name();
+        let of = match argument {
+            Argument::Record(_, record) => type_name(program, record),
+            Argument::Field(field) => language.shape(field.shape).0,
+        };
+        lines.push(variable(&of, name));
+        for place in argument.places() {
+            lines.push(format!("a_{place} = inputs[i * {count}u + {from}u];"));
+            from += 1;
+        }
+    }
+    let names: Vec<_> = function
+        .arguments()
+        .iter()
+        .map(|argument| format!("a_{}", argument.name()))
+        .collect();
+    let (prefix, output) = (prefix(program), function.output());
+    let call = format!("{prefix}{}({})", function.name(), names.join(", "));
+    lines.push(match language {
+        Language::Wgsl => format!("let r = {call};"),
+        _ => format!("{} r = {call};", type_name(program, output)),
+    });
+    let len = output.len();
+    let places = output.fields.iter().flat_map(Field::places);
+    lines.extend(
+        (0..len)
+            .zip(places)
+            .map(|(to, place)| format!("outputs[i * {len}u + {to}u] = r.{place};")),
+    );
+    lines
+}
+
+fn wgsl(program: &Program) -> String {
+    let mut out = "@group(0) @binding(0) var<storage, read> inputs: array<f32>;\n\
+                   @group(0) @binding(1) var<storage, read_write> outputs: array<f32>;\n"
+        .to_owned();
+    for function in program.functions() {
+        let count: usize = function.arguments().iter().map(Argument::len).sum();
+        let statements = statements(program, Language::Wgsl, function).join("\n    ");
+        out += &format!(
+            "\n@compute @workgroup_size(64) fn {}(@builtin(global_invocation_id) id: vec3<u32>) {{\n    let i = id.x;\n    \
+             if i >= arrayLength(&inputs) / {count}u {{ return; }}\n    {statements}\n}}\n",
+            function.name(),
+        );
+    }
+    out
+}
+
+fn glsl(program: &Program) -> String {
+    let function = program
+        .functions()
+        .last()
+        .expect("a program has a function");
+    let count: usize = function.arguments().iter().map(Argument::len).sum();
+    let statements = statements(program, Language::Glsl, function).join("\n    ");
+    format!(
+        "layout(local_size_x = 64) in;\nlayout(std430, set = 0, binding = 0) readonly buffer Inputs {{ float inputs[]; }};\n\
+         layout(std430, set = 0, binding = 1) buffer Outputs {{ float outputs[]; }};\n\
+         void main() {{\n    uint i = gl_GlobalInvocationID.x;\n    if (i >= inputs.length() / {count}u) return;\n    \
+         {statements}\n}}\n"
+    )
+}
+
+fn c(program: &Program) -> String {
+    let mut out = "#include <stdio.h>\n#include <stdlib.h>\n".to_owned();
+    let mut calls = String::new();
+    for function in program.functions() {
+        let name = function.name();
+        let count: usize = function.arguments().iter().map(Argument::len).sum();
+        let statements = statements(program, Language::C, function).join("\n        ");
+        out += &format!(
+            "static void run_{name}(const float *inputs, float *outputs, unsigned n) {{\n    \
+             for (unsigned i = 0; i < n; i++) {{\n        {statements}\n    }}\n}}\n"
+        );
+        calls += &format!(
+            "    if (!strcmp(argv[1], \"{name}\")) {{ run = run_{name}; in = {count}; out = {}; }}\n",
+            function.output().len()
+        );
+    }
+    out + &format!(
+        "int main(int argc, char **argv) {{\n    void (*run)(const float *, float *, unsigned) = 0;\n    \
+         size_t in = 0, out = 0, n = 0, room = 1u << 20;\n    \
+         float *inputs = (float *)malloc(room * sizeof(float));\n    float *outputs;\n    if (argc < 2) return 2;\n{calls}    \
+         if (!run) return 2;\n    for (;;) {{\n        \
+         n += fread(inputs + n, sizeof(float), room - n, stdin);\n        if (n < room) break;\n        \
+         inputs = (float *)realloc(inputs, (room *= 2) * sizeof(float));\n    }}\n    n /= in;\n    \
+         outputs = (float *)malloc(n * out * sizeof(float));\n    run(inputs, outputs, (unsigned)n);\n    \
+         return fwrite(outputs, sizeof(float), n * out, stdout) != n * out;\n}}\n"
+    )
+}

@@ -1,0 +1,213 @@
+//! What comes before the functions of a program: comments, and the operations that a language lacks.
+
+use super::{Language, prefix};
+use crate::program::{Program, Target};
+
+/// Names of types and functions that differ between the languages that look like C.
+const C: &str = "\
+#ifndef HAIRIS_OPERATIONS
+#define HAIRIS_OPERATIONS
+#if defined(__FAST_MATH__) || defined(__FAST_RELAXED_MATH__) || defined(_M_FP_FAST) || \\
+    defined(__ASSOCIATIVE_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error \"hairis: compile without fast math (-ffast-math, /fp:fast), with which results are up to 41 percent off\"
+#endif
+#if defined(__OPENCL_C_VERSION__) || defined(__OPENCL_VERSION__)
+#define HAIRIS_OPENCL
+#pragma OPENCL FP_CONTRACT OFF
+#define sqrtf sqrt
+#define fabsf fabs
+#define fmaf fma
+#define exp2f exp2
+#define log2f log2
+#define HAIRIS_UINT uint
+#define HAIRIS_BITS as_uint
+#define HAIRIS_NUMBER as_float
+#else
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+#define HAIRIS_UINT uint32_t
+#define HAIRIS_BITS hairis_bits
+#define HAIRIS_NUMBER hairis_number
+#endif
+// Products and sums round apart. GCC reads no pragma: -ffp-contract=off, or -std=c99.
+#if (defined(__clang__) && !defined(HAIRIS_OPENCL)) || defined(_MSC_VER)
+#pragma STDC FP_CONTRACT OFF
+#endif
+// Loops over a function are vectorised where it is inlined.
+#if defined(__CUDACC__)
+#define HAIRIS_FN static __host__ __device__ __forceinline__
+#elif defined(__GNUC__)
+#define HAIRIS_FN static inline __attribute__((always_inline))
+#elif defined(_MSC_VER)
+#define HAIRIS_FN static __forceinline
+#else
+#define HAIRIS_FN static inline
+#endif
+#define HAIRIS_MASK int
+#if !defined(HAIRIS_OPENCL)
+HAIRIS_FN uint32_t hairis_bits(float a) { uint32_t b; memcpy(&b, &a, sizeof b); return b; }
+HAIRIS_FN float hairis_number(uint32_t b) { float a; memcpy(&a, &b, sizeof a); return a; }
+#endif
+typedef struct HairisVec3 { float x, y, z; } HairisVec3;
+HAIRIS_FN HairisVec3 hairis_vec3(float x, float y, float z) { HairisVec3 a; a.x = x; a.y = y; a.z = z; return a; }
+#endif
+";
+const GLSL: &str = "\
+#ifndef HAIRIS_OPERATIONS
+#define HAIRIS_OPERATIONS
+#define HAIRIS_FN
+#define HAIRIS_MASK bool
+#define HAIRIS_UINT uint
+#define HAIRIS_BITS floatBitsToUint
+#define HAIRIS_NUMBER uintBitsToFloat
+#endif
+";
+const HLSL: &str = "\
+#ifndef HAIRIS_OPERATIONS
+#define HAIRIS_OPERATIONS
+#define HAIRIS_FN
+#define HAIRIS_MASK bool
+#define HAIRIS_UINT uint
+#define HAIRIS_BITS asuint
+#define HAIRIS_NUMBER asfloat
+#endif
+";
+const MSL: &str = "\
+#ifndef HAIRIS_OPERATIONS
+#define HAIRIS_OPERATIONS
+#include <metal_stdlib>
+using namespace metal;
+#define HAIRIS_FN static inline
+#define HAIRIS_MASK bool
+#define HAIRIS_UINT uint
+#define HAIRIS_BITS as_type<uint>
+#define HAIRIS_NUMBER as_type<float>
+#endif
+";
+
+/// Operations of languages that look like C, on top of those names.
+const LIKE_C: &str = "\
+// The second operand where either is NaN.
+HAIRIS_FN float $pmin(float a, float b) { return a < b ? a : b; }
+HAIRIS_FN float $pmax(float a, float b) { return a > b ? a : b; }
+HAIRIS_FN float $ptimes_sign(float a, float b) {
+    return HAIRIS_NUMBER(HAIRIS_BITS(a) ^ (HAIRIS_BITS(b) & 0x80000000u));
+}
+HAIRIS_FN float $pnegate_if(HAIRIS_MASK m, float a) { return m ? -a : a; }
+// A power of two from an integer in the low bits, biased as an exponent is.
+HAIRIS_FN float $pshift_left_23(float a) { return HAIRIS_NUMBER(HAIRIS_BITS(a) << 23); }
+HAIRIS_FN float $pupper(float a) { return HAIRIS_NUMBER(HAIRIS_BITS(a) & 0xfffff000u); }
+// Mantissa from sqrt(1/2) to sqrt(2), and exponent.
+HAIRIS_FN HAIRIS_UINT $pexponent_bits(float a) { return (HAIRIS_BITS(a) + 0x004afb0du) >> 23; }
+HAIRIS_FN float $pmantissa(float a) {
+    return HAIRIS_NUMBER(HAIRIS_BITS(a) + 0x3f800000u - ($pexponent_bits(a) << 23));
+}
+HAIRIS_FN float $pexponent(float a) { return HAIRIS_NUMBER($pexponent_bits(a) | 0x4b000000u) - 8388735.0f; }
+HAIRIS_FN float $pnumber(HAIRIS_UINT bits) { return HAIRIS_NUMBER(bits); }
+HAIRIS_FN HAIRIS_MASK $pis_below_infinity(float a) {
+    return (HAIRIS_BITS(a) & 0x7fffffffu) < 0x7f800000u || HAIRIS_BITS(a) == 0xff800000u;
+}
+
+";
+
+const WGSL: &str = "\
+// The second operand where either is NaN.
+fn $pmin(a: f32, b: f32) -> f32 { return select(b, a, a < b); }
+fn $pmax(a: f32, b: f32) -> f32 { return select(b, a, a > b); }
+fn $ptimes_sign(a: f32, b: f32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(a) ^ (bitcast<u32>(b) & 0x80000000u));
+}
+fn $pnegate_if(m: bool, a: f32) -> f32 { return select(a, -a, m); }
+// A power of two from an integer in the low bits, biased as an exponent is.
+fn $pshift_left_23(a: f32) -> f32 { return bitcast<f32>(bitcast<u32>(a) << 23u); }
+fn $pupper(a: f32) -> f32 { return bitcast<f32>(bitcast<u32>(a) & 0xfffff000u); }
+// Mantissa from sqrt(1/2) to sqrt(2), and exponent.
+fn $pexponent_bits(a: f32) -> u32 { return (bitcast<u32>(a) + 0x004afb0du) >> 23u; }
+fn $pmantissa(a: f32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(a) + 0x3f800000u - ($pexponent_bits(a) << 23u));
+}
+fn $pexponent(a: f32) -> f32 { return bitcast<f32>($pexponent_bits(a) | 0x4b000000u) - 8388735.0; }
+fn $pnumber(bits: u32) -> f32 { return bitcast<f32>(bits); }
+fn $pis_below_infinity(a: f32) -> bool {
+    return (bitcast<u32>(a) & 0x7fffffffu) < 0x7f800000u || bitcast<u32>(a) == 0xff800000u;
+}
+
+";
+
+/// What is true of the language and the target, for the reader.
+fn notes(language: Language, target: Target) -> String {
+    let bits = match target {
+        Target::Exact => {
+            "Compiled so that arithmetic keeps its order, results have the bits of one lane of the Rust library."
+        }
+        Target::Fused => {
+            "Compiled so that arithmetic keeps its order, results have the bits of the Rust library's levels that fuse."
+        }
+        Target::Gpu => {
+            "Results differ from those of the Rust library in the last digits: products and sums may fuse."
+        }
+        Target::GpuNative => {
+            "Results differ from those of the Rust library in the last digits: products and sums may fuse, and exp2 and \
+             log2 are the target's."
+        }
+    };
+    let language = match language {
+        Language::C => {
+            "C99, C++, CUDA (for bits: nvcc -fmad=false) and OpenCL C (for bits: -cl-fp32-correctly-rounded-divide-sqrt)."
+        }
+        Language::Wgsl => "WGSL.",
+        Language::Glsl => "GLSL from version 4.00 or 3.20 ES: put it after #version.",
+        Language::Hlsl => "HLSL from shader model 5.",
+        Language::Msl => {
+            "Metal. Compile without fast math (-fno-fast-math, MTLMathModeSafe), or NaN and infinity are not handled."
+        }
+    };
+    format!("// {language}\n// {bits}\n")
+}
+
+/// Comments, and operations that the language lacks.
+pub(super) fn head(program: &Program, language: Language) -> String {
+    let prefix = prefix(program);
+    let (name, layout) = (program.name(), program.layout());
+    let upper = prefix.to_uppercase();
+    let material = program.material().len();
+    let mut text = format!(
+        "// Generated by hairis {} from its model {name}. Do not edit.\n{}\
+         //\n// Directions are unit vectors in the frame of the fibre and point away from it: x along it from root to tip, y and \
+         z across.\n\
+         // wo is towards the viewer, wi towards the light; h is the offset of the hit across the fibre, from -1 to 1.\n\
+         // Outgoing radiance is the integral of value * cos theta_i * incoming radiance over wi, cos theta_i = \
+         sqrt(wi.y^2 + wi.z^2);\n// weight is value * cos theta_i / pdf. Colours are linear RGB.\n//\n\
+         // Comments in functions name the source of the model that the operations below them come from.\n\n",
+        env!("CARGO_PKG_VERSION"),
+        notes(language, program.target()),
+    );
+    let constants = match language {
+        Language::Wgsl => format!(
+            "// Version of the layout of materials and shading points, and floats in a material.\n\
+             const {upper}LAYOUT: u32 = 0x{layout:08x}u;\nconst {upper}MATERIAL_FLOATS: u32 = {material}u;\n\n"
+        ),
+        _ => format!(
+            "// Version of the layout of materials and shading points, and floats in a material.\n\
+             #define {upper}LAYOUT 0x{layout:08x}u\n#define {upper}MATERIAL_FLOATS {material}\n\n"
+        ),
+    };
+    if language == Language::C {
+        text += &format!("#ifndef {upper}H\n#define {upper}H\n");
+    }
+    text += match language {
+        Language::C => C,
+        Language::Wgsl => "",
+        Language::Glsl => GLSL,
+        Language::Hlsl => HLSL,
+        Language::Msl => MSL,
+    };
+    text += &constants;
+    let operations = if language == Language::Wgsl {
+        WGSL
+    } else {
+        LIKE_C
+    };
+    text + &operations.replace("$p", &prefix)
+}

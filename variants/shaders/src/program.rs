@@ -1,0 +1,374 @@
+//! The functions of a model.
+
+use crate::function::{Argument, Function};
+use crate::graph::{Graph, Lane, input, record};
+use crate::record::{Field, Record, Shape, numbers};
+use hairis::Eval;
+use hairis::Hit;
+use hairis::model::{Model, SampleLanes};
+use hairis::simd::trace::{Arithmetic, Exact, Fused, Gpu, GpuNative};
+use hairis::simd::{LaneStruct, Path, Vec3x};
+use hairis_variants::{Parameters, Registered};
+
+/// Arithmetic of the target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Target {
+    /// Products and sums round apart: the bits of one lane.
+    Exact,
+    /// Products with sums round once: the bits of a level that fuses.
+    Fused,
+    /// Products with sums may round once or twice, as `fma` of WGSL.
+    Gpu,
+    /// As [`Gpu`](Self::Gpu), with `exp2` and `log2` of the target.
+    GpuNative,
+}
+
+/// A function of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Call {
+    /// Material and hit to the constants of a shading point.
+    Prepare,
+    /// Value and density at a direction.
+    Eval,
+    /// A sampled direction.
+    Sample,
+    /// Value, colour and density of each lobe at a direction.
+    Lobes,
+    /// [`Prepare`](Self::Prepare) and [`Eval`](Self::Eval) in one.
+    EvalHit,
+    /// [`Prepare`](Self::Prepare) and [`Sample`](Self::Sample) in one.
+    SampleHit,
+    /// [`Prepare`](Self::Prepare), [`Eval`](Self::Eval) and [`Sample`](Self::Sample) in one: a bounce with one light.
+    EvalSampleHit,
+}
+
+impl Call {
+    /// Every function.
+    pub const ALL: [Self; 7] = [
+        Self::Prepare,
+        Self::Eval,
+        Self::Sample,
+        Self::Lobes,
+        Self::EvalHit,
+        Self::SampleHit,
+        Self::EvalSampleHit,
+    ];
+
+    /// Purpose, in a line.
+    #[must_use]
+    pub const fn purpose(self) -> &'static str {
+        match self {
+            Self::Prepare => "Constants of a shading point: material and hit.",
+            Self::Eval => "Value (without the cosine) and density at wi.",
+            Self::Sample => {
+                "A direction drawn with three uniform numbers in [0, 1); slot -1: discarded."
+            }
+            Self::Lobes => "Value without its colour, colour and density of each lobe at wi.",
+            Self::EvalHit => "Value (without the cosine) and density at wi, of a hit.",
+            Self::SampleHit => {
+                "A direction drawn at a hit with three uniform numbers in [0, 1); slot -1: discarded."
+            }
+            Self::EvalSampleHit => "Value and density at wi, and a direction drawn, of a hit.",
+        }
+    }
+
+    /// Name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Prepare => "prepare",
+            Self::Eval => "eval",
+            Self::Sample => "sample",
+            Self::Lobes => "lobes",
+            Self::EvalHit => "eval_hit",
+            Self::SampleHit => "sample_hit",
+            Self::EvalSampleHit => "eval_sample_hit",
+        }
+    }
+}
+
+/// A model's functions and records, for one target.
+#[derive(Clone, Debug)]
+pub struct Program {
+    name: String,
+    target: Target,
+    material: Record,
+    prepared: Record,
+    functions: Vec<Function>,
+    /// Functions of materials, which have no argument.
+    materials: Vec<Function>,
+}
+
+impl Program {
+    /// Traces a model of the list, with its presets.
+    #[must_use]
+    pub fn of<M: Registered>(target: Target) -> Self {
+        let mut name = M::NAME.replace('-', "_");
+        if !const { hairis_variants::ModelId::of::<M>().is_default() }
+            && let Some((_, word)) = M::CHOICE
+        {
+            name = format!("{name}_{}", word.replace('-', "_"));
+        }
+        let mut program = Self::trace::<M>(&name, target);
+        for (name, params) in M::Params::PRESETS {
+            program.add_material(
+                &name.replace('-', "_"),
+                &numbers(&M::MODEL.material(params)),
+            );
+        }
+        program
+    }
+
+    /// Traces any model, under a name that is an identifier in C.
+    #[must_use]
+    pub fn trace<M: Model>(name: &str, target: Target) -> Self {
+        match target {
+            Target::Exact => Self::record::<M, Exact>(name, target),
+            Target::Fused => Self::record::<M, Fused>(name, target),
+            Target::Gpu => Self::record::<M, Gpu>(name, target),
+            Target::GpuNative => Self::record::<M, GpuNative>(name, target),
+        }
+    }
+
+    fn record<M: Model, A: Arithmetic>(name: &str, target: Target) -> Self {
+        let (_, (material, prepared)) = record(|| {
+            let next = &mut 0;
+            let material = lanes::<M::Material<Lane<A>>, A>(next);
+            let prepared = lanes::<M::Prepared<Lane<A>>, A>(next);
+            (
+                Record::of("material", &material).0,
+                Record::of("prepared", &prepared).0,
+            )
+        });
+        let functions = Call::ALL
+            .map(|call| function::<M, A>(call, &material, &prepared))
+            .into();
+        Self {
+            name: name.to_owned(),
+            target,
+            material,
+            prepared,
+            functions,
+            materials: Vec::new(),
+        }
+    }
+
+    /// Name of the model.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Arithmetic of the target.
+    #[must_use]
+    pub const fn target(&self) -> Target {
+        self.target
+    }
+
+    /// Layout of a material: what a host uploads, and in which order.
+    #[must_use]
+    pub const fn material(&self) -> &Record {
+        &self.material
+    }
+
+    /// Layout of a shading point.
+    #[must_use]
+    pub const fn prepared(&self) -> &Record {
+        &self.prepared
+    }
+
+    /// The functions, in the order of their output.
+    #[must_use]
+    pub fn functions(&self) -> &[Function] {
+        &self.functions
+    }
+
+    /// The function `call`.
+    ///
+    /// # Panics
+    ///
+    /// If [`keep`](Self::keep) removed it.
+    #[must_use]
+    pub fn function(&self, call: Call) -> &Function {
+        let is_called = |function: &&Function| function.name() == call.name();
+        let function = self.functions.iter().find(is_called);
+        function.expect("a program has every call until some are removed")
+    }
+
+    /// Replaces the functions.
+    pub fn keep(&mut self, functions: Vec<Function>) {
+        self.functions = functions;
+    }
+
+    /// Functions of materials by name, which have no argument: the presets, and those of
+    /// [`add_material`](Self::add_material).
+    #[must_use]
+    pub fn materials(&self) -> &[Function] {
+        &self.materials
+    }
+
+    /// Adds a material under a name that is an identifier in C, by its numbers in the order of [`material`](Self::material).
+    ///
+    /// # Panics
+    ///
+    /// If they are not as many as those of a material.
+    pub fn add_material(&mut self, name: &str, numbers: &[f32]) {
+        assert_eq!(numbers.len(), self.material.len(), "numbers of a material");
+        let mut graph = Graph::default();
+        let results: Vec<u32> = numbers.iter().map(|x| graph.constant(*x)).collect();
+        let name = format!("material_{name}");
+        self.materials.retain(|known| known.name() != name);
+        let output = self.material.clone();
+        self.materials
+            .push(Function::new(name, Vec::new(), output, &graph, &results));
+    }
+
+    /// Version of the layout: a hash (FNV-1a, 32 bits) of names and order of the numbers of a material and of a shading point.
+    /// Code that uploads numbers compares it with that of the source it was written for.
+    #[must_use]
+    pub fn layout(&self) -> u32 {
+        let records = [&self.material, &self.prepared];
+        let places = records.into_iter().flat_map(Record::places);
+        places.fold(0x811c_9dc5, |hash, place| {
+            (place.bytes().chain([b'\n'])).fold(hash, |hash, byte| {
+                (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
+            })
+        })
+    }
+}
+
+/// A struct of the next arguments.
+fn lanes<S: LaneStruct<Number = Lane<A>>, A: Arithmetic>(next: &mut u32) -> S {
+    S::make(&Path::Root, &mut |_| input(next))
+}
+
+fn three<A: Arithmetic>(next: &mut u32) -> [Lane<A>; 3] {
+    [input(next), input(next), input(next)]
+}
+
+fn vector<A: Arithmetic>(next: &mut u32) -> Vec3x<Lane<A>> {
+    let [x, y, z] = three(next);
+    Vec3x::new(x, y, z)
+}
+
+const EVAL: [(&str, Shape); 2] = [("value", Shape::Vector), ("pdf", Shape::Number)];
+const SAMPLE: [(&str, Shape); 5] = [
+    ("wi", Shape::Vector),
+    ("value", Shape::Vector),
+    ("pdf", Shape::Number),
+    ("weight", Shape::Vector),
+    ("slot", Shape::Number),
+];
+
+fn eval<A: Arithmetic>(eval: Eval<Lane<A>>) -> Vec<Lane<A>> {
+    let [r, g, b] = eval.value;
+    vec![r, g, b, eval.pdf]
+}
+
+fn sample<A: Arithmetic>(sample: SampleLanes<Lane<A>>) -> Vec<Lane<A>> {
+    let ([r, g, b], [wr, wg, wb], wi) = (sample.value, sample.weight, sample.wi);
+    vec![
+        wi.x,
+        wi.y,
+        wi.z,
+        r,
+        g,
+        b,
+        sample.pdf,
+        wr,
+        wg,
+        wb,
+        sample.slot,
+    ]
+}
+
+/// Type of a call's result.
+fn output<M: Model>(call: Call, prepared: &Record) -> Record {
+    let lobes = M::LOBES.len();
+    match call {
+        Call::Prepare => prepared.clone(),
+        Call::Eval | Call::EvalHit => Record::new("eval", &EVAL),
+        Call::Sample | Call::SampleHit => Record::new("sample", &SAMPLE),
+        Call::Lobes => Record::new(
+            "lobes",
+            &[
+                ("value", Shape::Array(lobes)),
+                ("color", Shape::Array(3 * lobes)),
+                ("pdf", Shape::Array(lobes)),
+            ],
+        ),
+        Call::EvalSampleHit => {
+            let mut fields = Vec::new();
+            for (record, of) in [("eval", &EVAL[..]), ("sample", &SAMPLE[..])] {
+                let prefixed = of
+                    .iter()
+                    .map(|(name, shape)| Field::new(format!("{record}_{name}"), *shape));
+                fields.extend(prefixed);
+            }
+            let name = "eval_sample".to_owned();
+            Record { name, fields }
+        }
+    }
+}
+
+fn function<M: Model, A: Arithmetic>(call: Call, material: &Record, prepared: &Record) -> Function {
+    type Prepared<M, A> = <M as Model>::Prepared<Lane<A>>;
+    let is_prepared = matches!(call, Call::Eval | Call::Sample | Call::Lobes);
+    let (has_wi, has_xi) = (
+        matches!(
+            call,
+            Call::Eval | Call::Lobes | Call::EvalHit | Call::EvalSampleHit
+        ),
+        matches!(call, Call::Sample | Call::SampleHit | Call::EvalSampleHit),
+    );
+    let vector_argument = |name: &str| Argument::Field(Field::new(name, Shape::Vector));
+    let mut arguments = if is_prepared {
+        vec![Argument::Record("prepared".to_owned(), prepared.clone())]
+    } else {
+        let h = Argument::Field(Field::new("h", Shape::Number));
+        vec![
+            Argument::Record("material".to_owned(), material.clone()),
+            vector_argument("wo"),
+            h,
+        ]
+    };
+    let (graph, results) = record(|| {
+        let next = &mut 0;
+        let point: Prepared<M, A> = if is_prepared {
+            lanes(next)
+        } else {
+            let material: M::Material<Lane<A>> = lanes(next);
+            let wo = vector(next);
+            let hit = Hit::new(wo, input(next));
+            M::prepare::<Lane<A>, Lane<A>>(&material, hit)
+        };
+        let mut results = Vec::new();
+        if call == Call::Prepare {
+            results = numbers(&point);
+        }
+        if has_wi {
+            let wi = vector(next);
+            if call == Call::Lobes {
+                let lobes = &M::lobes::<Lane<A>, Lane<A>>(&point, wi).0[..M::LOBES.len()];
+                results.extend(lobes.iter().map(|lobe| lobe.value));
+                results.extend(lobes.iter().flat_map(|lobe| lobe.color));
+                results.extend(lobes.iter().map(|lobe| lobe.pdf));
+            } else {
+                results.extend(eval(M::eval::<Lane<A>, Lane<A>>(&point, wi)));
+            }
+        }
+        if has_xi {
+            let xi = three(next);
+            results.extend(sample(M::sample::<Lane<A>, Lane<A>>(&point, xi)));
+        }
+        results.into_iter().map(Lane::name).collect::<Vec<_>>()
+    });
+    if has_wi {
+        arguments.push(vector_argument("wi"));
+    }
+    if has_xi {
+        arguments.push(vector_argument("xi"));
+    }
+    let output = output::<M>(call, prepared);
+    Function::new(call.name().to_owned(), arguments, output, &graph, &results)
+}

@@ -1,0 +1,212 @@
+//! The header compiles without warnings as C and C++, and has the bits of one lane.
+
+use crate::support::{Case, case_count, differing, every_model, fusing_level, same};
+use hairis_shaders::{Call, Function, Language, Program, Rounding, Target, driver, print};
+use hairis_variants::{KajiyaKay, Parameters, Registered, Visitor};
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+/// Warnings that a host may have switched on.
+const STRICT: &[&str] = &["-pedantic", "-Wall", "-Wextra", "-Werror"];
+
+fn exists(compiler: &str) -> bool {
+    let found = Command::new(compiler).arg("--version").output();
+    let found = found.is_ok_and(|output| output.status.success());
+    if !found {
+        println!("{compiler} is not installed: skipped");
+    }
+    found
+}
+
+fn compile(dir: &Path, source: &str, compiler: &str, flags: &[&str]) -> Result<PathBuf, String> {
+    let is_cpp = compiler.ends_with("++");
+    let file = dir.join(if is_cpp { "main.cpp" } else { "main.c" });
+    let program = dir.join("main");
+    fs::write(&file, source).expect("the folder is ours");
+    let mut command = Command::new(compiler);
+    command
+        .args(flags)
+        .args(STRICT)
+        .arg(&file)
+        .arg("-o")
+        .arg(&program)
+        .arg("-lm");
+    let Output { status, stderr, .. } = command.output().expect("the compiler starts");
+    if status.success() {
+        Ok(program)
+    } else {
+        Err(String::from_utf8_lossy(&stderr).into_owned())
+    }
+}
+
+/// Results of a compiled driver.
+pub(crate) fn run(program: &Path, function: &str, inputs: &[f32]) -> Vec<f32> {
+    let mut child = Command::new(program)
+        .arg(function)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let bytes: Vec<u8> = inputs.iter().flat_map(|x| x.to_le_bytes()).collect();
+    let mut stdin = child.stdin.take().expect("standard input is a pipe");
+    // The program reads all before it writes.
+    stdin.write_all(&bytes).expect("the program reads");
+    drop(stdin);
+    let output = child.wait_with_output().expect("the program ends");
+    assert!(output.status.success(), "{function}: {}", output.status);
+    let (chunks, _) = output.stdout.as_chunks::<4>();
+    chunks
+        .iter()
+        .map(|bytes| f32::from_le_bytes(*bytes))
+        .collect()
+}
+
+fn source(program: &Program) -> String {
+    print(program, Language::C) + &driver(program, Language::C)
+}
+
+/// Cases of each call that differ from one lane in a bit.
+fn differences<M: Registered>(program: &Program, binary: &Path, cases: &[Case<M>]) -> usize {
+    let mut differ = 0;
+    for call in Call::ALL {
+        let inputs: Vec<f32> = cases.iter().flat_map(|case| case.arguments(call)).collect();
+        let expected: Vec<_> = cases.iter().map(|case| case.results(call)).collect();
+        let function = program.function(call);
+        differ += differing(function, &run(binary, function.name(), &inputs), &expected);
+    }
+    differ
+}
+
+#[derive(Clone, Copy)]
+struct Bits {
+    compiler: &'static str,
+    flags: &'static [&'static str],
+}
+
+impl Visitor for Bits {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        let program = Program::of::<M>(Target::Exact);
+        let dir = TempDir::new().expect("a folder for the program");
+        let binary = compile(dir.path(), &source(&program), self.compiler, self.flags);
+        let binary = binary.unwrap_or_else(|error| panic!("{}: {error}", program.name()));
+        let cases = Case::<M>::many(case_count(1024), 42);
+        let differ = differences(&program, &binary, &cases);
+        let name = program.name();
+        assert_eq!(differ, 0, "{name} by {}: cases that differ", self.compiler);
+    }
+}
+
+fn bits(compiler: &'static str, flags: &'static [&'static str]) {
+    if exists(compiler) {
+        every_model(Bits { compiler, flags });
+    }
+}
+
+#[test]
+fn c_has_the_bits_of_one_lane() {
+    bits("gcc", &["-std=c99", "-O1"]);
+}
+
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn optimised_c_has_the_bits_of_one_lane() {
+    bits("gcc", &["-std=c99", "-O2"]);
+}
+
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn clang_has_the_bits_of_one_lane() {
+    bits("clang", &["-std=c99", "-O2"]);
+}
+
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn cpp_has_the_bits_of_one_lane() {
+    bits("g++", &["-std=c++17", "-O1", "-ffp-contract=off"]);
+}
+
+/// The control: what contraction does is found.
+#[test]
+fn contraction_is_found() {
+    struct Contracted;
+    impl Visitor for Contracted {
+        type Output = ();
+        fn visit<M: Registered>(self) {
+            let program = Program::of::<M>(Target::Exact);
+            let dir = TempDir::new().expect("a folder for the program");
+            let flags = ["-std=gnu99", "-O2", "-mfma", "-ffp-contract=fast"];
+            let binary = compile(dir.path(), &source(&program), "gcc", &flags);
+            let binary = binary.expect("contraction is no error");
+            let cases = Case::<M>::many(1024, 42);
+            let differ = differences(&program, &binary, &cases);
+            assert!(differ > 100, "{differ} cases differ with contraction");
+        }
+    }
+    if fusing_level().is_some() && cfg!(target_arch = "x86_64") && exists("gcc") {
+        hairis_variants::ModelId::Gaussian.visit(Contracted);
+    }
+}
+
+#[test]
+fn fast_math_is_refused() {
+    let program = Program::of::<KajiyaKay>(Target::Exact);
+    let dir = TempDir::new().expect("a folder for the program");
+    for (compiler, flag) in [
+        ("gcc", "-ffast-math"),
+        ("gcc", "-ffinite-math-only"),
+        ("clang", "-ffast-math"),
+    ] {
+        if exists(compiler) {
+            let error = compile(dir.path(), &source(&program), compiler, &[flag]);
+            let error = error.expect_err("fast arithmetic is refused");
+            assert!(
+                error.contains("compile without fast math"),
+                "{compiler} {flag}: {error}"
+            );
+        }
+    }
+}
+
+/// Two models in one file, and materials by name.
+#[test]
+fn headers_share_a_file_and_have_materials() {
+    if !exists("gcc") {
+        return;
+    }
+    let dir = TempDir::new().expect("a folder for the program");
+    let programs = [
+        Program::of::<KajiyaKay>(Target::Exact),
+        Program::of::<hairis::Published<hairis::Gaussian>>(Target::Exact),
+    ];
+    let mut text: String = programs
+        .iter()
+        .map(|program| print(program, Language::C))
+        .collect();
+    let first = programs[0].materials().first().map(Function::name);
+    text += &format!(
+        "#include <stdio.h>\nint main(void) {{\n    HairisKajiyaKayMaterial other = hairis_kajiya_kay_{}();\n    \
+         HairisGaussianMaterial m = hairis_gaussian_material_brown();\n    (void)other;\n    \
+         return fwrite(&m, sizeof m, 1, stdout) != 1;\n}}\n",
+        first.expect("a model has a preset")
+    );
+    let binary = compile(dir.path(), &text, "gcc", &["-std=c99"]).expect("both headers compile");
+    let brown = programs[1].materials().iter();
+    let brown = brown
+        .clone()
+        .find(|function| function.name() == "material_brown");
+    let expected = brown.expect("brown is a preset").run(&[], Rounding::Once);
+    let got = run(&binary, "", &[]);
+    assert!(got.len() == expected.len() && got.iter().zip(&expected).all(|(a, b)| same(*a, *b)));
+    let params = hairis::HairParams::PRESETS
+        .iter()
+        .find(|(name, _)| *name == "brown");
+    let (_, params) = params.expect("brown is a preset");
+    let model = <hairis::Published<hairis::Gaussian> as Registered>::MODEL;
+    let numbers = hairis_shaders::numbers(&hairis::model::Model::material(&model, params));
+    assert_eq!(got, numbers, "the numbers of the material");
+}

@@ -1,0 +1,402 @@
+//! Printed source is accepted by the compilers of its language.
+
+use crate::support::{Random, every_model};
+use hairis_shaders::{Call, Function, Language, Program, Target, driver, print, spirv};
+use hairis_variants::{Registered, Visitor};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+/// The program with derivatives as well.
+pub(crate) fn with_gradients<M: Registered>(target: Target) -> Program {
+    let mut program = Program::of::<M>(target);
+    let mut functions = program.functions().to_vec();
+    for call in [Call::Eval, Call::EvalHit] {
+        functions.push(program.function(call).gradient());
+    }
+    program.keep(functions);
+    program
+}
+
+pub(crate) fn write_words(file: &Path, words: &[u32]) {
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    fs::write(file, bytes).expect("the folder is ours");
+}
+
+/// Runs a tool. `None` if it is not installed.
+pub(crate) fn tool(name: &str, arguments: &[&str]) -> Option<Result<(), String>> {
+    let Ok(output) = Command::new(name).args(arguments).output() else {
+        println!("{name} is not installed: skipped");
+        return None;
+    };
+    let said = [output.stdout, output.stderr].concat();
+    let said = String::from_utf8_lossy(&said).into_owned();
+    Some(if output.status.success() {
+        Ok(())
+    } else {
+        Err(said)
+    })
+}
+
+#[derive(Clone, Copy)]
+struct Wgsl;
+
+impl Visitor for Wgsl {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        for target in [Target::Exact, Target::Gpu, Target::GpuNative] {
+            let program = with_gradients::<M>(target);
+            let source = print(&program, Language::Wgsl) + &driver(&program, Language::Wgsl);
+            if let Err(error) = spirv::translate(&source) {
+                panic!("{} {target:?}: {error}", program.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn naga_accepts_wgsl() {
+    every_model(Wgsl);
+}
+
+/// The last function of a program in GLSL, as SPIR-V.
+pub(crate) fn compile_glsl(program: &Program, dir: &Path) -> Option<PathBuf> {
+    let (file, out) = (dir.join("main.comp"), dir.join("glsl.spv"));
+    let source = print(program, Language::Glsl) + &driver(program, Language::Glsl);
+    fs::write(&file, format!("#version 450\n{source}")).expect("the folder is ours");
+    let arguments = ["-V", &file.to_string_lossy(), "-o", &out.to_string_lossy()];
+    let said = tool("glslangValidator", &arguments)?;
+    said.unwrap_or_else(|error| panic!("{}: {error}", program.name()));
+    Some(out)
+}
+
+/// A shader of HLSL whose entry point calls the last function with numbers from a buffer.
+fn hlsl(program: &Program) -> String {
+    let glsl = driver(program, Language::Glsl);
+    let body = glsl
+        .split_once("return;\n")
+        .expect("a driver checks its range")
+        .1;
+    let body = body.trim_end().trim_end_matches('}');
+    let body = body.replace("vec3", "float3");
+    format!(
+        "{}StructuredBuffer<float> inputs : register(t0);\nRWStructuredBuffer<float> outputs : register(u1);\n\
+         [numthreads(64, 1, 1)] void main(uint3 id : SV_DispatchThreadID) {{\n    uint i = id.x;\n{body}}}\n",
+        print(program, Language::Hlsl)
+    )
+}
+
+#[derive(Clone, Copy)]
+struct Glslang;
+
+impl Visitor for Glslang {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        let dir = TempDir::new().expect("a folder for shaders");
+        let program = with_gradients::<M>(Target::Gpu);
+        let Some(compiled) = compile_glsl(&program, dir.path()) else {
+            return;
+        };
+        if let Some(Err(error)) = tool("spirv-val", &[&compiled.to_string_lossy()]) {
+            panic!("{} in GLSL: {error}", program.name());
+        }
+        let (file, out) = (dir.path().join("main.hlsl"), dir.path().join("hlsl.spv"));
+        fs::write(&file, hlsl(&program)).expect("the folder is ours");
+        let (file, out) = (file.to_string_lossy(), out.to_string_lossy());
+        let arguments = ["-D", "-V", "-S", "comp", "-e", "main", &file, "-o", &out];
+        if let Some(Err(error)) = tool("glslangValidator", &arguments) {
+            panic!("{} in HLSL: {error}", program.name());
+        }
+        let module = spirv::module(&program).expect("naga accepts it");
+        let file = dir.path().join("module.spv");
+        write_words(&file, &module);
+        if let Some(Err(error)) = tool("spirv-val", &[&file.to_string_lossy()]) {
+            panic!("{} in SPIR-V: {error}", program.name());
+        }
+    }
+}
+
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn glslang_accepts_glsl_and_hlsl() {
+    every_model(Glslang);
+}
+
+/// The C header compiles as `OpenCL` C and for PTX, to code without a branch or a call.
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn clang_compiles_opencl_and_cuda() {
+    let program = Program::of::<hairis::Published<hairis::Gaussian>>(Target::Exact);
+    let dir = TempDir::new().expect("a folder for shaders");
+    let kernel = "\nHAIRIS_KERNEL void shade(HAIRIS_GLOBAL const float *wi, HAIRIS_GLOBAL float *out) {\n    \
+                  const HairisGaussianEval e = hairis_gaussian_eval_hit(hairis_gaussian_material_brown(), \
+                  hairis_vec3(0.0f, 1.0f, 0.0f), 0.0f, hairis_vec3(wi[0], wi[1], wi[2]));\n    \
+                  out[0] = e.value.x; out[1] = e.pdf;\n}\n";
+    let header = dir.path().join("hairis.h");
+    fs::write(&header, print(&program, Language::C)).expect("the folder is ours");
+    let source = format!("#include \"{}\"{kernel}", header.to_string_lossy());
+    let out = dir.path().join("out");
+    let out = out.to_string_lossy();
+    let opencl = dir.path().join("main.cl");
+    let names = "#define HAIRIS_KERNEL __kernel\n#define HAIRIS_GLOBAL __global\n";
+    fs::write(&opencl, format!("{names}{source}")).expect("the folder is ours");
+    let opencl = opencl.to_string_lossy();
+    let arguments = [
+        "-x",
+        "cl",
+        "-cl-std=CL1.2",
+        "-Xclang",
+        "-finclude-default-header",
+        "-target",
+        "spir64",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-O2",
+        "-S",
+        "-emit-llvm",
+        &opencl,
+        "-o",
+        &out,
+    ];
+    if let Some(Err(error)) = tool("clang", &arguments) {
+        panic!("OpenCL C: {error}");
+    }
+    let cuda = dir.path().join("main.cl");
+    let cuda = cuda.to_string_lossy();
+    let arguments = [
+        "-x",
+        "cl",
+        "-cl-std=CL1.2",
+        "-Xclang",
+        "-finclude-default-header",
+        "-target",
+        "nvptx64-nvidia-nvcl",
+        "-O2",
+        "-ffp-contract=off",
+        "-S",
+        &cuda,
+        "-o",
+        &out,
+    ];
+    match tool("clang", &arguments) {
+        None => {}
+        Some(Err(error)) => panic!("PTX: {error}"),
+        Some(Ok(())) => {
+            let ptx = fs::read_to_string(&*out).expect("the compiler wrote it");
+            for word in ["\tbra", "\tcall", "fma.rn"] {
+                assert!(!ptx.contains(word), "PTX has {word}");
+            }
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Traps;
+
+impl Visitor for Traps {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        for target in [Target::Exact, Target::Fused, Target::Gpu, Target::GpuNative] {
+            let program = with_gradients::<M>(target);
+            let [c, wgsl, glsl, hlsl, msl] =
+                Language::ALL.map(|language| print(&program, language));
+            // Sums that round to an integer.
+            for text in [&wgsl, &msl] {
+                let magic = ["8388608.0", "8388723.0", "8388735.0"];
+                let is_magic = |line: &&str| magic.iter().any(|number| line.contains(number));
+                for line in text.lines().filter(is_magic) {
+                    let rounds = line.contains("round(") || line.contains("rint(");
+                    let is_helper = line.contains("8388735.0; }") || line.contains("8388735.0f; }");
+                    let subtracts = line.contains("8388723.0f -") || line.contains("8388735.0f -");
+                    assert!(
+                        rounds || is_helper || subtracts,
+                        "sum that compilers take apart: {line}"
+                    );
+                }
+            }
+            // Compilers keep the order of every number's arithmetic.
+            for text in [&glsl, &hlsl] {
+                let numbers = text
+                    .lines()
+                    .filter(|line| line.contains(" x") && line.contains(" = "));
+                for line in numbers.filter(|line| !line.contains("bool m")) {
+                    let is_result = line.trim_start().starts_with("result.");
+                    assert!(
+                        is_result || line.contains("precise float x"),
+                        "not precise: {line}"
+                    );
+                }
+            }
+            // Languages without infinity.
+            for text in [&wgsl, &c] {
+                assert!(
+                    !text.contains("inf") || !text.contains("inff"),
+                    "a literal of infinity"
+                );
+            }
+            // The language's own choice among NaN.
+            for line in wgsl.lines() {
+                assert!(!line.contains(" min(") && !line.contains(" max("), "{line}");
+            }
+        }
+    }
+}
+
+#[test]
+fn text_avoids_what_compilers_do() {
+    every_model(Traps);
+}
+
+/// Words against reordering are on every arithmetic instruction.
+#[test]
+fn spirv_keeps_the_order_of_arithmetic() {
+    let program = Program::of::<hairis_variants::KajiyaKay>(Target::Exact);
+    let mut source = print(&program, Language::Wgsl);
+    source += &driver(&program, Language::Wgsl);
+    let plain = spirv::translate(&source).expect("naga accepts it");
+    let kept = spirv::module(&program).expect("naga accepts it");
+    let count = |words: &[u32], op: u32| {
+        let (mut at, mut count) = (5, 0);
+        while at < words.len() {
+            count += usize::from(words[at] & 0xffff == op);
+            at += (words[at] >> 16) as usize;
+        }
+        count
+    };
+    let arithmetic: usize = [127, 129, 131, 133, 136]
+        .iter()
+        .map(|op| count(&kept, *op))
+        .sum();
+    assert!(arithmetic > 500, "{arithmetic} instructions of arithmetic");
+    assert_eq!(
+        kept.len(),
+        plain.len() + 3 * arithmetic,
+        "a decoration each"
+    );
+    assert_eq!(
+        count(&kept, 71),
+        count(&plain, 71) + arithmetic,
+        "a decoration each"
+    );
+}
+
+/// Every literal is read as the float it stands for, by a reader of decimals in double precision.
+#[test]
+fn literals_are_exact() {
+    let mut program = Program::of::<hairis_variants::KajiyaKay>(Target::Exact);
+    let mut random = Random(43);
+    let len = program.material().len();
+    let mut expected = Vec::new();
+    let special = [
+        f32::MAX,
+        f32::MIN_POSITIVE,
+        -0.0,
+        1e-44,
+        16_777_217.0,
+        0.1,
+        -3.5,
+    ];
+    for i in 0..40 {
+        let numbers: Vec<f32> = (0..len)
+            .map(|j| match special.get(i * len + j) {
+                Some(special) => *special,
+                None => random.range(-1.0, 1.0) * random.range(-120.0, 120.0).exp2(),
+            })
+            .collect();
+        program.add_material(&format!("m{i}"), &numbers);
+        expected.extend(numbers);
+    }
+    program.keep(Vec::new());
+    for language in Language::ALL {
+        let text = print(&program, language);
+        let at = text.find("material_m0").expect("the first material");
+        let lines = text[at..].lines().filter(|line| line.contains("result."));
+        let literals: Vec<&str> = lines
+            .map(|line| {
+                line.split_once(" = ")
+                    .expect("an assignment")
+                    .1
+                    .trim_end_matches("f;")
+            })
+            .collect();
+        assert_eq!(literals.len(), expected.len());
+        for (literal, number) in literals.iter().zip(&expected) {
+            let read = if literal.contains("0x") {
+                from_hexadecimal(literal)
+            } else {
+                literal.parse().expect("a decimal number")
+            };
+            #[expect(clippy::cast_possible_truncation, reason = "as compilers do")]
+            let single = read as f32;
+            assert_eq!(single.to_bits(), number.to_bits(), "{language:?} {literal}");
+            // Tint refuses decimals above the largest float.
+            assert!(
+                language != Language::Wgsl || read == f64::from(*number),
+                "{literal}"
+            );
+        }
+    }
+}
+
+fn from_hexadecimal(literal: &str) -> f64 {
+    let (sign, rest) = match literal.strip_prefix('-') {
+        Some(rest) => (-1.0, rest),
+        None => (1.0, literal),
+    };
+    let (digits, exponent) = rest
+        .trim_start_matches("0x")
+        .split_once('p')
+        .expect("a power");
+    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+    let all = u32::from_str_radix(&format!("{whole}{fraction}"), 16).expect("digits");
+    let places = i32::try_from(4 * fraction.len()).expect("few digits");
+    let exponent: i32 = exponent.parse().expect("an exponent");
+    sign * f64::from(all) * f64::from(exponent - places).exp2()
+}
+
+/// Code that uploads numbers notices another layout.
+#[test]
+fn the_layout_has_a_version() {
+    let layouts: Vec<u32> = [
+        Program::of::<hairis::Published<hairis::Gaussian>>(Target::Exact).layout(),
+        Program::of::<hairis::Matched<hairis::Gaussian>>(Target::Exact).layout(),
+        Program::of::<hairis_variants::KajiyaKay>(Target::Exact).layout(),
+        Program::of::<hairis_variants::Chiang>(Target::Exact).layout(),
+    ]
+    .into();
+    let mut unique = layouts.clone();
+    unique.sort_unstable();
+    unique.dedup();
+    assert_eq!(
+        unique.len(),
+        layouts.len(),
+        "layouts that differ have versions that differ"
+    );
+    let program = Program::of::<hairis_variants::KajiyaKay>(Target::Fused);
+    assert_eq!(
+        program.layout(),
+        layouts[2],
+        "the layout is that of the model, on every target"
+    );
+    for language in Language::ALL {
+        let text = print(&program, language);
+        assert!(
+            text.contains(&format!("{:#010x}u", program.layout())),
+            "{language:?}"
+        );
+        let comments = text
+            .lines()
+            .filter(|line| line.starts_with("    // kajiya_kay.rs:"));
+        assert!(
+            comments.count() > 5,
+            "{language:?}: the source of the model is named"
+        );
+    }
+    let called: Vec<&str> = program.functions().iter().map(Function::name).collect();
+    assert_eq!(called, Call::ALL.map(Call::name));
+}

@@ -1,0 +1,275 @@
+//! Cases, and what the models return for them.
+
+use core::fmt;
+use hairis::model::{Model, SampleLanes};
+use hairis::simd::{Level, Vec3x, f32x8};
+use hairis::{Eval, Hit, Material, Material8};
+use hairis_shaders::{Call, Function, numbers};
+use hairis_variants::{Kind, ModelId, Parameters, Registered, Values, Visitor};
+
+/// The generator `SplitMix64`.
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// A number in [0, 1).
+    #[expect(clippy::cast_precision_loss, reason = "24 bits fit a float")]
+    pub(crate) fn unit(&mut self) -> f32 {
+        (self.next() >> 40) as f32 / 16_777_216.0
+    }
+
+    pub(crate) fn range(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * self.unit()
+    }
+
+    pub(crate) fn choose<T: Copy>(&mut self, of: &[T]) -> T {
+        of[usize::try_from(self.next() % of.len() as u64).expect("an index")]
+    }
+
+    fn one_in(&mut self, n: u64) -> bool {
+        self.next().is_multiple_of(n)
+    }
+
+    pub(crate) fn sphere(&mut self) -> [f32; 3] {
+        let (u, phi) = (self.range(-1.0, 1.0), self.range(-3.2, 3.2));
+        let cos = (1.0 - u * u).max(0.0).sqrt();
+        [u, cos * phi.cos(), cos * phi.sin()]
+    }
+
+    /// A direction: at random, along an axis, grazing, of any length, or none.
+    fn direction(&mut self) -> [f32; 3] {
+        let mut wi = self.sphere();
+        match self.next() % 32 {
+            0 => wi = [self.choose(&[-1.0, 1.0]), 0.0, 0.0],
+            1 => wi = [0.0, self.choose(&[-1.0, 1.0]), 0.0],
+            2 | 3 => {
+                let angle = self.range(-16.0, -1.0).exp2();
+                wi = [self.choose(&[-1.0, 1.0]), angle * wi[1], angle * wi[2]];
+            }
+            4 => wi = wi.map(|x| x * 1e20),
+            5 => wi = wi.map(|x| x * 1e-20),
+            6 => {
+                let numbers = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -0.0];
+                wi[self.choose(&[0, 1, 2])] = self.choose(&numbers);
+            }
+            7 => wi = [0.0; 3],
+            _ => {}
+        }
+        wi
+    }
+
+    fn offset(&mut self) -> f32 {
+        if self.one_in(4) {
+            self.choose(&[0.0, -1.0, 1.0, 2.0, -3.0, f32::NAN, 0.999_999_9])
+        } else {
+            self.range(-1.0, 1.0)
+        }
+    }
+
+    fn uniform(&mut self) -> [f32; 3] {
+        let mut xi = [self.unit(), self.unit(), self.unit()];
+        if self.one_in(4) {
+            let ends = [0.0, 0.999_999_94, 1.0, f32::NAN, f32::INFINITY, -1.0, 1e-9];
+            xi[self.choose(&[0, 1, 2])] = self.choose(&ends);
+        }
+        xi
+    }
+
+    /// A material: the first preset, or any; one in four with narrow lobes.
+    pub(crate) fn material<P: Parameters>(&mut self) -> P {
+        loop {
+            let mut values: Values = P::default().values();
+            let is_narrow = self.one_in(4);
+            for field in P::FIELDS {
+                if field.instead_of.is_some() && self.one_in(2) {
+                    continue;
+                }
+                match (field.kind, field.draw) {
+                    (Kind::Word(words), _) => {
+                        let word = self.choose(words);
+                        values = values.with_word(field.name, word);
+                    }
+                    (kind, Some(draw)) => {
+                        let number = || {
+                            let number = if draw.log {
+                                self.range(draw.least.ln(), draw.most.ln()).exp()
+                            } else {
+                                self.range(draw.least, draw.most)
+                            };
+                            number * draw.unit
+                        };
+                        let mut numbers: Vec<f32> =
+                            core::iter::repeat_with(number).take(kind.width()).collect();
+                        if is_narrow && let Some(narrow) = field.narrow {
+                            numbers.fill(narrow);
+                        }
+                        values = values.with(field.name, &numbers);
+                    }
+                    _ => {}
+                }
+            }
+            if let Ok(params) = P::from_values(&values) {
+                return params;
+            }
+        }
+    }
+}
+
+/// Arguments of every call.
+pub(crate) struct Case<M: Model> {
+    handle: Material<M>,
+    pub(crate) material: M::Material<f32>,
+    pub(crate) wo: [f32; 3],
+    pub(crate) h: f32,
+    pub(crate) wi: [f32; 3],
+    pub(crate) xi: [f32; 3],
+}
+
+impl<M: Model> fmt::Display for Case<M> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { wo, h, wi, xi, .. } = self;
+        write!(f, "wo {wo:?}, h {h}, wi {wi:?}, xi {xi:?}")
+    }
+}
+
+fn vector<L: Copy>([x, y, z]: [L; 3]) -> Vec3x<L> {
+    Vec3x::new(x, y, z)
+}
+
+fn eval<L: Copy>(eval: &Eval<L>) -> Vec<L> {
+    let [r, g, b] = eval.value;
+    vec![r, g, b, eval.pdf]
+}
+
+fn sample<L: Copy>(s: &SampleLanes<L>) -> Vec<L> {
+    let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
+    vec![s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot]
+}
+
+impl<M: Registered> Case<M> {
+    /// Cases with everything that a host may pass, eight to a material.
+    pub(crate) fn many(count: usize, seed: u64) -> Vec<Self> {
+        let mut random = Random(seed);
+        let mut params = M::Params::PRESETS[0].1;
+        let mut cases = Vec::with_capacity(count);
+        for i in 0..count {
+            if i > 0 && i % 8 == 0 {
+                params = random.material();
+            }
+            cases.push(Self {
+                handle: Material::new(&M::MODEL, &params),
+                material: M::MODEL.material(&params),
+                wo: random.direction(),
+                h: random.offset(),
+                wi: random.direction(),
+                xi: random.uniform(),
+            });
+        }
+        cases
+    }
+
+    /// Shading point of one lane.
+    pub(crate) fn prepared(&self) -> M::Prepared<f32> {
+        M::prepare::<f32, f32>(&self.material, Hit::new(vector(self.wo), self.h))
+    }
+
+    /// Arguments of a call.
+    pub(crate) fn arguments(&self, call: Call) -> Vec<f32> {
+        let mut all = match call {
+            Call::Eval | Call::Sample | Call::Lobes => numbers(&self.prepared()),
+            _ => {
+                let mut all = numbers(&self.material);
+                all.extend(self.wo);
+                all.push(self.h);
+                all
+            }
+        };
+        if !matches!(call, Call::Prepare | Call::Sample | Call::SampleHit) {
+            all.extend(self.wi);
+        }
+        if matches!(call, Call::Sample | Call::SampleHit | Call::EvalSampleHit) {
+            all.extend(self.xi);
+        }
+        all
+    }
+
+    /// Results of one lane.
+    pub(crate) fn results(&self, call: Call) -> Vec<f32> {
+        let prepared = self.prepared();
+        let at = || eval(&M::eval::<f32, f32>(&prepared, vector(self.wi)));
+        let drawn = || sample(&M::sample::<f32, f32>(&prepared, self.xi));
+        match call {
+            Call::Prepare => numbers(&prepared),
+            Call::Eval | Call::EvalHit => at(),
+            Call::Sample | Call::SampleHit => drawn(),
+            Call::EvalSampleHit => [at(), drawn()].concat(),
+            Call::Lobes => {
+                let lobes = M::lobes::<f32, f32>(&prepared, vector(self.wi)).0;
+                let lobes = &lobes[..M::LOBES.len()];
+                let mut all: Vec<f32> = lobes.iter().map(|lobe| lobe.value).collect();
+                all.extend(lobes.iter().flat_map(|lobe| lobe.color));
+                all.extend(lobes.iter().map(|lobe| lobe.pdf));
+                all
+            }
+        }
+    }
+
+    /// Results of [`Call::EvalSampleHit`] on a level: eight cases.
+    pub(crate) fn results8(cases: &[Self; 8], level: Level) -> [Vec<f32>; 8] {
+        let lanes = |of: &dyn Fn(&Self) -> f32| f32x8::new(cases.each_ref().map(of));
+        let lanes3 = |of: fn(&Self) -> [f32; 3]| [0, 1, 2].map(|i| lanes(&|case| of(case)[i]));
+        let materials = Material8::pack(cases.each_ref().map(|case| &case.handle));
+        let hit = Hit::new(vector(lanes3(|case| case.wo)), lanes(&|case| case.h));
+        let bsdf = materials.with_level(level).prepare8(hit);
+        let mut all = eval(&bsdf.eval_pdf8(&vector(lanes3(|case| case.wi))));
+        all.extend(sample(&bsdf.sample8(&lanes3(|case| case.xi))));
+        core::array::from_fn(|lane| all.iter().map(|x| x.to_array()[lane]).collect())
+    }
+}
+
+/// A level that fuses, if this CPU has one.
+pub(crate) fn fusing_level() -> Option<Level> {
+    Level::available().find(|level| level.fuses())
+}
+
+/// Whether both are the same number, or both none.
+pub(crate) fn same(a: f32, b: f32) -> bool {
+    a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
+}
+
+/// Results that differ in a bit.
+pub(crate) fn differing(function: &Function, got: &[f32], expected: &[Vec<f32>]) -> usize {
+    let len = function.output().len();
+    assert_eq!(
+        got.len(),
+        expected.len() * len,
+        "{}: count of results",
+        function.name()
+    );
+    let pairs = got.chunks(len).zip(expected);
+    pairs
+        .filter(|(got, expected)| !got.iter().zip(*expected).all(|(a, b)| same(*a, *b)))
+        .count()
+}
+
+/// Runs a test of each model of the list.
+pub(crate) fn every_model<V: Visitor + Copy>(visitor: V) {
+    for id in ModelId::ALL {
+        id.visit(visitor);
+    }
+}
+
+/// Count of cases per model: all of them when `HAIRIS_CASES` says how many.
+pub(crate) fn case_count(usual: usize) -> usize {
+    let told = std::env::var("HAIRIS_CASES");
+    told.map_or(usual, |count| {
+        count.parse().expect("HAIRIS_CASES is a count")
+    })
+}

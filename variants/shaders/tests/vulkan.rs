@@ -1,0 +1,219 @@
+//! Shaders on a Vulkan driver: the bits of one lane where arithmetic keeps its order, its accuracy where it may not.
+
+use crate::languages::{compile_glsl, tool, write_words};
+use crate::support::{Case, case_count, differing, every_model};
+use hairis_shaders::{Call, Function, Language, Program, Rounding, Target, driver, print, spirv};
+use hairis_variants::{Registered, Visitor};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+const RUNNER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vulkan.c");
+
+/// The program that runs a shader, and a folder for its files.
+struct Driver {
+    dir: TempDir,
+    runner: PathBuf,
+}
+
+impl Driver {
+    /// `None` where there is no compiler or no Vulkan.
+    fn new() -> Option<Self> {
+        let dir = TempDir::new().expect("a folder for shaders");
+        let runner = dir.path().join("vulkan");
+        let arguments = [
+            "-std=c99",
+            "-O1",
+            RUNNER,
+            "-o",
+            &runner.to_string_lossy(),
+            "-lvulkan",
+        ];
+        if let Err(error) = tool("gcc", &arguments)? {
+            println!("no Vulkan to link with: skipped: {error}");
+            return None;
+        }
+        Some(Self { dir, runner })
+    }
+
+    fn run(&self, module: &Path, entry: &str, function: &Function, inputs: &[f32]) -> Vec<f32> {
+        let [input, output] = ["input", "output"].map(|name| self.dir.path().join(name));
+        let bytes: Vec<u8> = inputs.iter().flat_map(|x| x.to_le_bytes()).collect();
+        fs::write(&input, bytes).expect("the folder is ours");
+        let said = Command::new(&self.runner)
+            .args([module, Path::new(entry), &input, &output])
+            .arg(function.inputs().len().to_string())
+            .arg(function.output().len().to_string())
+            .output()
+            .expect("the program starts");
+        let stderr = String::from_utf8_lossy(&said.stderr);
+        assert!(said.status.success(), "{entry}: {stderr}");
+        let bytes = fs::read(&output).expect("the program wrote it");
+        let (chunks, _) = bytes.as_chunks::<4>();
+        chunks
+            .iter()
+            .map(|bytes| f32::from_le_bytes(*bytes))
+            .collect()
+    }
+}
+
+/// Calls whose results are compared: those of a shading point are parts of them.
+const CALLS: [Call; 2] = [Call::EvalHit, Call::SampleHit];
+
+struct Kept;
+
+impl Visitor for &Kept {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        let Some(driver) = Driver::new() else { return };
+        let cases = Case::<M>::many(case_count(4096), 44);
+        // `fma` of WGSL may be two operations, and is on this driver.
+        for target in [Target::Exact, Target::Gpu] {
+            let mut program = Program::of::<M>(target);
+            let calls = CALLS.map(|call| program.function(call).clone());
+            program.keep(calls.to_vec());
+            let module = driver.dir.path().join("module.spv");
+            write_words(&module, &spirv::module(&program).expect("naga accepts it"));
+            for (call, function) in CALLS.into_iter().zip(&calls) {
+                let inputs: Vec<f32> = cases.iter().flat_map(|case| case.arguments(call)).collect();
+                let expected = cases.iter().map(|case| match target {
+                    Target::Exact => case.results(call),
+                    _ => function.run(&case.arguments(call), Rounding::Twice),
+                });
+                let expected: Vec<_> = expected.collect();
+                let got = driver.run(&module, call.name(), function, &inputs);
+                let count = differing(function, &got, &expected);
+                println!(
+                    "{} {} {target:?}: {count} of {} differ",
+                    program.name(),
+                    call.name(),
+                    cases.len()
+                );
+                assert_eq!(count, 0, "{} {} {target:?}", program.name(), call.name());
+                if target == Target::Exact {
+                    let mut one = program.clone();
+                    one.keep(vec![function.clone()]);
+                    if let Some(module) = compile_glsl(&one, driver.dir.path()) {
+                        let got = driver.run(&module, "main", function, &inputs);
+                        let count = differing(function, &got, &expected);
+                        assert_eq!(count, 0, "{} {} in GLSL", program.name(), call.name());
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn shaders_that_keep_their_order_have_the_bits_of_one_lane() {
+    every_model(&Kept);
+}
+
+/// Errors of values and densities relative to double precision, of arguments that are numbers: the quantiles 50%, 99% and
+/// 99.9%.
+fn quantiles(got: &[f32], exact: &[f64]) -> [f64; 3] {
+    let pairs = got
+        .iter()
+        .zip(exact)
+        .filter(|(_, exact)| **exact > 1e-8 && exact.is_finite());
+    let mut errors: Vec<f64> = pairs
+        .map(|(got, exact)| (f64::from(*got) / exact - 1.0).abs())
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    assert!(errors.len() > got.len() / 4, "{} errors", errors.len());
+    [0.5, 0.99, 0.999].map(|share| {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            clippy::cast_precision_loss,
+            reason = "a place"
+        )]
+        let place = (share * errors.len() as f64) as usize;
+        errors[place]
+    })
+}
+
+struct Plain;
+
+impl Visitor for &Plain {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        let Some(vulkan) = Driver::new() else { return };
+        let cases = Case::<M>::many(case_count(4096), 45);
+        let inputs: Vec<f32> = cases
+            .iter()
+            .flat_map(|case| case.arguments(Call::EvalHit))
+            .collect();
+        let one: Vec<f32> = cases
+            .iter()
+            .flat_map(|case| case.results(Call::EvalHit))
+            .collect();
+        let exact_program = Program::of::<M>(Target::Exact);
+        let exact: Vec<f64> = cases
+            .iter()
+            .flat_map(|case| {
+                let arguments = case.arguments(Call::EvalHit);
+                let arguments: Vec<f64> = arguments.into_iter().map(f64::from).collect();
+                exact_program
+                    .function(Call::EvalHit)
+                    .run_double(&arguments)
+                    .0
+            })
+            .collect();
+        let of_one = quantiles(&one, &exact);
+        for target in [Target::Exact, Target::Gpu, Target::GpuNative] {
+            let mut program = Program::of::<M>(target);
+            let calls = CALLS.map(|call| program.function(call).clone());
+            program.keep(calls.to_vec());
+            let source = print(&program, Language::Wgsl) + &driver(&program, Language::Wgsl);
+            let module = vulkan.dir.path().join("module.spv");
+            write_words(
+                &module,
+                &spirv::translate(&source).expect("naga accepts it"),
+            );
+            let got = vulkan.run(&module, Call::EvalHit.name(), &calls[0], &inputs);
+            let of_shader = quantiles(&got, &exact);
+            println!(
+                "{} {target:?}: {of_shader:?}, one lane {of_one:?}",
+                program.name()
+            );
+            for (shader, one) in of_shader.iter().zip(of_one) {
+                assert!(
+                    *shader < 2.0 * one.max(1e-6),
+                    "{} {target:?}",
+                    program.name()
+                );
+            }
+            // What is no direction is black.
+            let samples: Vec<f32> = cases
+                .iter()
+                .flat_map(|case| case.arguments(Call::SampleHit))
+                .collect();
+            let samples = vulkan.run(&module, Call::SampleHit.name(), &calls[1], &samples);
+            for ((case, got), sample) in cases.iter().zip(got.chunks(4)).zip(samples.chunks(11)) {
+                let is_number = |x: &[f32; 3]| x.iter().all(|x| x.is_finite());
+                if !is_number(&case.wo) || !is_number(&case.wi) {
+                    assert_eq!(got, [0.0; 4], "{}: {case}", program.name());
+                }
+                if !is_number(&case.wo) || case.xi.iter().any(|x| x.is_nan()) {
+                    assert_eq!(
+                        sample[3..],
+                        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0],
+                        "{}: {case}",
+                        program.name()
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn plain_shaders_have_the_accuracy_of_one_lane() {
+    every_model(&Plain);
+}
