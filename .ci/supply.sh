@@ -23,7 +23,7 @@ for features in '' few std,few; do
 done
 check hairis-shaders '' spirv
 check hairis-instruments '' parquet png parquet,png
-check hairis-harness '' parquet png parquet,png
+check hairis-harness '' parquet png spirv parquet,png
 
 if command -v cargo-deny > /dev/null; then cargo deny check --config .ci/deny.toml licenses bans sources
 else echo "licences, bans and sources were not checked: cargo install --locked cargo-deny"; fi

@@ -4,6 +4,7 @@ pub mod claims;
 pub mod compare;
 pub mod eval;
 pub mod merge;
+pub mod shader;
 pub mod study;
 
 use crate::args::Command;
@@ -20,7 +21,7 @@ use std::path::Path;
 ///
 /// [`Error`] if it was stopped, or if a check failed.
 pub fn run(command: &Command) -> Result<(), Error> {
-    if !matches!(command, Command::Eval(_)) {
+    if !matches!(command, Command::Eval(_) | Command::Shader(_)) {
         check_threads();
     }
     match command {
@@ -29,6 +30,7 @@ pub fn run(command: &Command) -> Result<(), Error> {
         Command::Study(flags) => study::run(flags),
         Command::Claims(flags) => claims::run(flags),
         Command::Merge(flags) => merge::run(flags),
+        Command::Shader(flags) => shader::run(flags),
     }
 }
 

@@ -4,6 +4,7 @@ mod agreement;
 mod claims;
 mod exact;
 mod refusals;
+mod shader;
 mod streams;
 mod study;
 

@@ -149,6 +149,7 @@ impl Function {
     /// - Result: the fields of the result, and for each number of the arguments the derivative to it of the sum of
     ///   `weight * result`, in fields named `d_material_...`, `d_wo`, `d_h`.
     ///
+    /// Derivatives are finite: 0 where they would be infinite or undefined, as along the fibre, where the model is black.
     /// Choices are taken as constant: the derivative is that of the branch. `wo` and `wi` of unit length, within 1e-5, are not
     /// normalised: the derivative is right along the sphere, and arbitrary across it.
     ///
@@ -184,7 +185,14 @@ impl Function {
         }
         let zero = pass.graph.constant(0.0);
         let mut results = self.results().to_vec();
-        results.extend(derivatives.into_iter().map(|place| place.unwrap_or(zero)));
+        let infinity = pass.graph.constant(f32::INFINITY);
+        for derivative in derivatives {
+            results.push(derivative.map_or(zero, |place| {
+                let magnitude = pass.op(Op::Abs, [place]);
+                let is_finite = pass.op(Op::Less, [magnitude, infinity]);
+                pass.op(Op::Select, [is_finite, place, zero])
+            }));
+        }
 
         let name = format!("{}_gradient", self.name());
         let mut output = Record {

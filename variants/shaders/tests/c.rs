@@ -130,6 +130,42 @@ fn cpp_has_the_bits_of_one_lane() {
     bits("g++", &["-std=c++17", "-O1", "-ffp-contract=off"]);
 }
 
+#[derive(Clone, Copy)]
+struct Gradients;
+
+impl Visitor for Gradients {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        let mut program = Program::of::<M>(Target::Exact);
+        let gradient = program.function(Call::EvalHit).gradient();
+        program.keep(vec![gradient.clone()]);
+        let dir = TempDir::new().expect("a folder for the program");
+        let binary = compile(dir.path(), &source(&program), "gcc", &["-std=c99", "-O1"]);
+        let binary = binary.unwrap_or_else(|error| panic!("{}: {error}", program.name()));
+        let cases = Case::<M>::many(1024, 49);
+        let inputs: Vec<_> = cases
+            .iter()
+            .map(|case| [&case.arguments(Call::EvalHit)[..], &[0.5, 1.0, -0.5, 2.0]].concat())
+            .collect();
+        let expected: Vec<_> = inputs
+            .iter()
+            .map(|inputs| gradient.run(inputs, Rounding::Once))
+            .collect();
+        let got = run(&binary, gradient.name(), &inputs.concat());
+        let differ = differing(&gradient, &got, &expected);
+        assert_eq!(differ, 0, "{}: gradients that differ", program.name());
+    }
+}
+
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn gradients_in_c_have_the_bits_of_the_graph() {
+    if exists("gcc") {
+        every_model(Gradients);
+    }
+}
+
 /// The control: what contraction does is found.
 #[test]
 fn contraction_is_found() {

@@ -2,6 +2,8 @@
 
 mod bits;
 mod c;
+mod gradients;
 mod languages;
+mod records;
 mod support;
 mod vulkan;

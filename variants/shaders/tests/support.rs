@@ -175,6 +175,20 @@ impl<M: Registered> Case<M> {
         cases
     }
 
+    /// Cases away from the edges, each with a material of its own.
+    pub(crate) fn smooth(count: usize, seed: u64) -> Vec<Self> {
+        let mut random = Random(seed);
+        let mut cases = Self::many(count, seed);
+        for case in &mut cases {
+            let params: M::Params = random.material();
+            case.material = M::MODEL.material(&params);
+            case.wo = random.sphere();
+            case.h = random.range(-0.95, 0.95);
+            case.wi = random.sphere();
+        }
+        cases
+    }
+
     /// Shading point of one lane.
     pub(crate) fn prepared(&self) -> M::Prepared<f32> {
         M::prepare::<f32, f32>(&self.material, Hit::new(vector(self.wo), self.h))

@@ -1,0 +1,26 @@
+#!/bin/bash
+# Promise: generated source is what it says. C and C++ (gcc, clang), SPIR-V and GLSL on a Vulkan driver have the bits of one lane
+# for every model; plain WGSL has its accuracy there, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C and PTX compile; gradients in C
+# have the bits of the graph. Debian's packages: gcc, g++, clang, glslang-tools, spirv-tools, libvulkan-dev, mesa-vulkan-drivers.
+# A tool that is missing is named, and its tests are skipped.
+#
+#   .ci/shaders.sh             4096 cases per model and function
+#   .ci/shaders.sh 131072      as many cases
+set -euo pipefail
+cd "$(dirname "$0")/.."
+export HAIRIS_CASES=${1:-4096}
+# Drivers in software alone: results are those of the driver that the bounds were measured on.
+for driver in /usr/share/vulkan/icd.d/lvp_icd*.json; do
+  [ -e "$driver" ] && export VK_ICD_FILENAMES=$driver VK_DRIVER_FILES=$driver
+done
+# The build of the test command: another would take longer than the tests.
+cargo test -q --locked -p hairis-shaders --test main -- --ignored --nocapture
+
+# Promise: a user without Rust shades a hair with the header of the README.
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+hairis=$(.ci/release.sh)/hairis
+"$hairis" shader --model gaussian --target c > "$dir/hairis_gaussian.h"
+awk '/^```/ { inside = ($0 == "```c") } inside && !/^```/' variants/shaders/README.md > "$dir/main.c"
+(cd "$dir" && cc -std=c99 -pedantic -Wall -Wextra -Werror -O2 main.c -lm && ./a.out) | tee "$dir/out"
+grep -Eq '^value [0-9.]+ .*pdf [0-9.]+, weight [0-9.]+' "$dir/out" || { echo "FAIL the example of the header"; exit 1; }

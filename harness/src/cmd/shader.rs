@@ -1,0 +1,223 @@
+//! `hairis shader`: a model as source of another language.
+
+use crate::args::{Shader, ShaderArithmetic, ShaderCall, ShaderTarget};
+use hairis::Material;
+use hairis_instruments::error::Error;
+use hairis_materials::MaterialSpec;
+use hairis_shaders::{Call, Function, Language, Program, Target, numbers, print};
+use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
+use std::fs;
+use std::io::{self, ErrorKind, Write};
+use std::path::Path;
+
+/// Prints the model on standard output.
+///
+/// # Errors
+///
+/// [`Error::Usage`] if there is no such model, field or material, [`Error::Write`] if standard output fails.
+pub fn run(flags: &Shader) -> Result<(), Error> {
+    let materials = flags.material.as_deref().map_or(Ok(Vec::new()), read)?;
+    let id = model(flags, &materials)?;
+    let text = id.visit(Source {
+        flags,
+        materials: &materials,
+    })?;
+    let mut out = io::stdout().lock();
+    match out.write_all(&text).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::Write(error)),
+        _ => Ok(()),
+    }
+}
+
+/// Materials of a file, by name.
+fn read(file: &Path) -> Result<Vec<(String, MaterialSpec)>, Error> {
+    let refuse =
+        |problem: String| Error::Usage(format!("--material {}: {problem}", file.display()));
+    let text = fs::read_to_string(file).map_err(|error| refuse(error.to_string()))?;
+    let materials = MaterialSpec::parse_all(&text).map_err(refuse)?;
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    let word = |c: char| {
+        if c.is_ascii_alphanumeric() {
+            c.to_ascii_lowercase()
+        } else {
+            '_'
+        }
+    };
+    let stem: String = stem.chars().map(word).collect();
+    let is_single = materials.len() == 1;
+    let name = |place: usize| {
+        if is_single {
+            stem.clone()
+        } else {
+            format!("{stem}_{place}")
+        }
+    };
+    Ok((1..).map(name).zip(materials).collect())
+}
+
+/// Entry of the list that the flags and the materials name.
+fn model(flags: &Shader, materials: &[(String, MaterialSpec)]) -> Result<ModelId, Error> {
+    let first = materials.first().map(|(_, material)| material.model);
+    let name = flags.model.as_deref().or(first.map(ModelId::name));
+    let name = name.unwrap_or_default();
+    let list = |words: Vec<&str>| words.join(", ");
+    let Some(of_name) = ModelId::find(name, None) else {
+        let names = ModelId::defaults_of_names().map(ModelId::name).collect();
+        return Err(Error::Usage(format!(
+            "--model must be one of {}, got {name:?}",
+            list(names)
+        )));
+    };
+    if let Some((_, other)) = materials
+        .iter()
+        .find(|(_, material)| material.model.name() != name)
+    {
+        let other = other.model.name();
+        return Err(Error::Usage(format!(
+            "--material must be of the model {name}, got one of {other}"
+        )));
+    }
+    let Some(word) = &flags.sampler else {
+        return Ok(if flags.model.is_none() {
+            first.unwrap_or(of_name)
+        } else {
+            of_name
+        });
+    };
+    ModelId::find(name, Some(word)).ok_or_else(|| {
+        let words = ModelId::ALL.iter().filter(|id| id.name() == name);
+        let words: Vec<_> = words
+            .filter_map(|id| id.choice())
+            .map(|(_, word)| word)
+            .collect();
+        Error::Usage(if words.is_empty() {
+            format!("--sampler must be left out, as {name} has one sampler, got {word:?}")
+        } else {
+            format!("--sampler must be one of {}, got {word:?}", list(words))
+        })
+    })
+}
+
+/// Prints a model.
+struct Source<'a> {
+    flags: &'a Shader,
+    materials: &'a [(String, MaterialSpec)],
+}
+
+impl Visitor for Source<'_> {
+    type Output = Result<Vec<u8>, Error>;
+
+    fn visit<M: Registered>(self) -> Self::Output {
+        let flags = self.flags;
+        let arithmetic = match (flags.arithmetic, flags.target) {
+            (Some(ShaderArithmetic::Exact), _) | (None, ShaderTarget::C) => Target::Exact,
+            (Some(ShaderArithmetic::Fused), _) => Target::Fused,
+            (Some(ShaderArithmetic::Gpu), _) | (None, _) => Target::Gpu,
+            (Some(ShaderArithmetic::GpuNative), _) => Target::GpuNative,
+        };
+        let mut program = Program::of::<M>(arithmetic);
+        let mut add = |name: &str, params: M::Params| -> Result<(), Error> {
+            let scale = if flags.conserving {
+                Material::new(&M::MODEL, &params).conserving_scale()
+            } else {
+                1.0
+            };
+            let params = params.scaled(scale)?;
+            program.add_material(name, &numbers(&M::MODEL.material(&params)));
+            Ok(())
+        };
+        if flags.conserving {
+            for (name, params) in M::Params::PRESETS {
+                add(
+                    &name.replace('-', "_"),
+                    M::Params::from_values(&params.values())?,
+                )?;
+            }
+        }
+        for (name, material) in self.materials {
+            let values: &Values = &material.values;
+            add(name, M::Params::from_values(values)?)?;
+        }
+        let functions = functions(flags, &program)?;
+        program.keep(functions);
+        let language = match flags.target {
+            ShaderTarget::C => Language::C,
+            ShaderTarget::Wgsl => Language::Wgsl,
+            ShaderTarget::Glsl => Language::Glsl,
+            ShaderTarget::Hlsl => Language::Hlsl,
+            ShaderTarget::Msl => Language::Msl,
+            ShaderTarget::Spirv => return spirv(&program),
+        };
+        Ok(print(&program, language).into_bytes())
+    }
+}
+
+#[cfg(feature = "spirv")]
+fn spirv(program: &Program) -> Result<Vec<u8>, Error> {
+    let words = hairis_shaders::spirv::module(program).map_err(Error::Usage)?;
+    Ok(words.into_iter().flat_map(u32::to_le_bytes).collect())
+}
+
+#[cfg(not(feature = "spirv"))]
+fn spirv(_: &Program) -> Result<Vec<u8>, Error> {
+    Err(Error::Usage(
+        "--target spirv needs a build with `--features spirv`: cargo build --release -p hairis-harness --features spirv".to_owned(),
+    ))
+}
+
+/// Functions that the flags name.
+fn functions(flags: &Shader, program: &Program) -> Result<Vec<Function>, Error> {
+    let calls = flags.calls.iter().map(|call| match call {
+        ShaderCall::Prepare => Call::Prepare,
+        ShaderCall::Eval => Call::Eval,
+        ShaderCall::Sample => Call::Sample,
+        ShaderCall::Lobes => Call::Lobes,
+        ShaderCall::EvalHit => Call::EvalHit,
+        ShaderCall::SampleHit => Call::SampleHit,
+        ShaderCall::EvalSampleHit => Call::EvalSampleHit,
+    });
+    let mut calls: Vec<Call> = calls.collect();
+    if calls.is_empty() {
+        calls.extend(Call::ALL);
+    }
+    let only: Vec<&str> = flags.only.iter().map(String::as_str).collect();
+    let mut functions: Vec<Function> = Vec::new();
+    for call in calls {
+        let whole = program.function(call);
+        if functions.iter().any(|known| known.name() == whole.name()) {
+            continue;
+        }
+        let function = if only.is_empty() {
+            whole.clone()
+        } else {
+            match whole.only(&only) {
+                Some(function) => function,
+                None if flags.calls.is_empty() => continue,
+                None => {
+                    let fields: Vec<_> = whole
+                        .output()
+                        .fields
+                        .iter()
+                        .map(|field| field.name.as_str())
+                        .collect();
+                    let (name, fields) = (whole.name(), fields.join(", "));
+                    return Err(Error::Usage(format!(
+                        "--only must be fields of {name}: {fields}, got {}",
+                        only.join(", ")
+                    )));
+                }
+            }
+        };
+        let gradient = (flags.gradient && matches!(call, Call::Eval | Call::EvalHit))
+            .then(|| function.gradient());
+        functions.push(function);
+        functions.extend(gradient);
+    }
+    if functions.is_empty() {
+        return Err(Error::Usage(format!(
+            "--only must be fields of a function's result, got {}",
+            only.join(", ")
+        )));
+    }
+    Ok(functions)
+}

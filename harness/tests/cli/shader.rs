@@ -1,0 +1,180 @@
+//! `hairis shader`: source on standard output, and refusals in one line.
+
+use super::{Run, good, run};
+use serde_json::Value;
+use std::fs;
+
+fn print(args: &[&str]) -> String {
+    let printed: Run = run(&[&["shader"], args].concat(), b"");
+    assert_eq!(printed.code, Some(0), "{:?}", printed.err);
+    assert!(printed.err.is_empty(), "{:?}", printed.err);
+    printed.out.join("\n")
+}
+
+fn refused(args: &[&str]) -> String {
+    let refused = run(&[&["shader"], args].concat(), b"");
+    assert_eq!(refused.code, Some(2), "{args:?}");
+    assert!(refused.out.is_empty(), "{args:?} prints nothing");
+    assert_eq!(refused.err.len(), 1, "{:?}", refused.err);
+    refused.err[0].clone()
+}
+
+#[test]
+fn every_language_has_the_functions_that_are_named() {
+    for (target, call) in [
+        (
+            "c",
+            "HairisKajiyaKayEval hairis_kajiya_kay_eval_hit(HairisKajiyaKayMaterial material, ",
+        ),
+        (
+            "wgsl",
+            "fn hairis_kajiya_kay_eval_hit(material: HairisKajiyaKayMaterial, wo: vec3<f32>",
+        ),
+        (
+            "glsl",
+            "HairisKajiyaKayEval hairis_kajiya_kay_eval_hit(HairisKajiyaKayMaterial material, vec3",
+        ),
+        (
+            "hlsl",
+            "HairisKajiyaKayEval hairis_kajiya_kay_eval_hit(HairisKajiyaKayMaterial material, float3",
+        ),
+        (
+            "msl",
+            "HairisKajiyaKayEval hairis_kajiya_kay_eval_hit(HairisKajiyaKayMaterial material, float3",
+        ),
+    ] {
+        let all = print(&["--model", "kajiya-kay", "--target", target]);
+        assert!(all.contains(call), "{target}");
+        assert!(
+            all.contains("hairis_kajiya_kay_material_brown("),
+            "{target}: presets"
+        );
+        let some = print(&[
+            "--model",
+            "kajiya-kay",
+            "--target",
+            target,
+            "--call",
+            "eval_hit",
+            "--gradient",
+        ]);
+        assert!(
+            some.contains(call) && some.contains("kajiya_kay_eval_hit_gradient("),
+            "{target}"
+        );
+        assert!(
+            !some.contains("hairis_kajiya_kay_sample("),
+            "{target}: one function is named"
+        );
+    }
+}
+
+#[test]
+fn models_samplers_and_fields_are_chosen() {
+    let matched = print(&[
+        "--model",
+        "gaussian",
+        "--sampler",
+        "matched",
+        "--target",
+        "wgsl",
+        "--call",
+        "eval_hit",
+    ]);
+    assert!(matched.contains("fn hairis_gaussian_matched_eval_hit("));
+    let channels = print(&[
+        "--model",
+        "chiang",
+        "--select",
+        "by-channel",
+        "--target",
+        "wgsl",
+        "--call",
+        "eval",
+    ]);
+    assert!(channels.contains("fn hairis_chiang_by_channel_eval("));
+    let whole = ["--model", "gaussian", "--target", "c", "--call", "eval_hit"];
+    let value = print(&[&whole[..], &["--only", "value"]].concat());
+    assert!(value.contains("HairisGaussianEvalHitValue hairis_gaussian_eval_hit_value("));
+    assert!(value.lines().count() < print(&whole).lines().count());
+    let fused = print(&[&whole[..], &["--arithmetic", "fused"]].concat());
+    assert!(fused.contains("fmaf(") && !print(&whole).contains("fmaf(x"));
+}
+
+#[test]
+fn materials_of_a_file_are_functions() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("my hair.json");
+    let mut request = good();
+    request["sampler"] = Value::from("matched");
+    fs::write(&file, request.to_string()).unwrap();
+    let file = file.to_str().unwrap();
+    let text = print(&["--material", file, "--target", "c", "--call", "eval_hit"]);
+    assert!(text.contains("hairis_gaussian_matched_material_my_hair(void)"));
+    let scaled = print(&[
+        "--material",
+        file,
+        "--target",
+        "c",
+        "--call",
+        "eval_hit",
+        "--conserving",
+    ]);
+    assert_ne!(text, scaled, "its albedo is above 1");
+    assert_eq!(text.lines().count(), scaled.lines().count());
+    let error = refused(&["--material", file, "--model", "chiang", "--target", "c"]);
+    assert!(
+        error.contains("--material") && error.contains("chiang"),
+        "{error}"
+    );
+    request["params"]["beta"] = serde_json::json!([0.0, 0.1, 0.1]);
+    fs::write(file, request.to_string()).unwrap();
+    let error = refused(&["--material", file, "--target", "c"]);
+    assert!(error.contains("beta"), "{error}");
+}
+
+#[test]
+fn bad_flags_are_refused() {
+    for (args, word) in [
+        (&["--target", "c"][..], "--model"),
+        (&["--model", "gausian", "--target", "c"], "gaussian, cauchy"),
+        (
+            &["--model", "gaussian", "--target", "c", "--sampler", "best"],
+            "matched-25",
+        ),
+        (
+            &[
+                "--model",
+                "kajiya-kay",
+                "--target",
+                "c",
+                "--sampler",
+                "best",
+            ],
+            "one sampler",
+        ),
+        (&["--model", "gaussian"], "--target"),
+        (&["--model", "gaussian", "--target", "cobol"], "wgsl"),
+        (
+            &["--model", "gaussian", "--target", "c", "--call", "evaluate"],
+            "eval_hit",
+        ),
+        (
+            &[
+                "--model", "gaussian", "--target", "c", "--call", "eval", "--only", "weight",
+            ],
+            "value, pdf",
+        ),
+        (
+            &["--model", "gaussian", "--target", "c", "--only", "colour"],
+            "colour",
+        ),
+        (
+            &["--material", "missing.json", "--target", "c"],
+            "missing.json",
+        ),
+    ] {
+        let error = refused(args);
+        assert!(error.contains(word), "{args:?}: {error}");
+    }
+}

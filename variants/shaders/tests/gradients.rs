@@ -1,0 +1,131 @@
+//! Gradients against differences in double precision, and at the edges.
+
+use crate::support::{Case, Random, every_model};
+use hairis_shaders::{Call, Function, Program, Rounding, Target};
+use hairis_variants::{Registered, Visitor};
+
+/// Derivative of the weighted results to the input at `place`, where no choice changes within a step.
+fn difference(function: &Function, inputs: &[f64], weights: &[f32], place: usize) -> Option<f64> {
+    let step = 1e-6 * inputs[place].abs().max(0.03);
+    let at = |by: f64| {
+        let mut inputs = inputs.to_vec();
+        inputs[place] += by;
+        let (results, choices) = function.run_double(&inputs);
+        let weighted = results.iter().zip(weights);
+        (
+            weighted
+                .map(|(result, weight)| result * f64::from(*weight))
+                .sum::<f64>(),
+            choices,
+        )
+    };
+    let ((low, before), (high, after)) = (at(-step), at(step));
+    (before == after).then_some((high - low) / (2.0 * step))
+}
+
+#[derive(Clone, Copy)]
+struct Differences(Call);
+
+impl Visitor for Differences {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        let program = Program::of::<M>(Target::Exact);
+        let function = program.function(self.0);
+        let gradient = function.gradient();
+        let (count, results) = (function.inputs().len(), function.output().len());
+        assert_eq!(gradient.output().len(), results + count);
+        let mut random = Random(46);
+        let mut errors = Vec::new();
+        for case in Case::<M>::smooth(48, 47) {
+            let inputs = case.arguments(self.0);
+            let weights: Vec<f32> = (0..results).map(|_| random.range(-1.0, 1.0)).collect();
+            let got = gradient.run(&[&inputs[..], &weights].concat(), Rounding::Once);
+            assert_eq!(
+                got[..results],
+                function.run(&inputs, Rounding::Once),
+                "the results"
+            );
+            let exact: Vec<f64> = inputs.iter().copied().map(f64::from).collect();
+            let loss: f64 = got
+                .iter()
+                .zip(&weights)
+                .map(|(x, w)| f64::from((x * w).abs()))
+                .sum();
+            for (place, got) in got[results..].iter().enumerate() {
+                if let Some(expected) = difference(function, &exact, &weights, place) {
+                    // A thousandth of the loss for a change of the whole argument counts as nothing.
+                    let least = 1e-3 * loss / exact[place].abs().max(1e-2);
+                    let scale = expected.abs().max(least).max(1e-30);
+                    errors.push((f64::from(*got) - expected).abs() / scale);
+                }
+            }
+        }
+        assert!(
+            errors.len() > 48 * count / 2,
+            "{} of {} smooth",
+            errors.len(),
+            48 * count
+        );
+        errors.sort_by(f64::total_cmp);
+        let (median, most) = (
+            errors[errors.len() / 2],
+            errors[errors.len() - 1 - errors.len() / 1000],
+        );
+        println!(
+            "{} {}: {median:e}, {most:e}",
+            program.name(),
+            gradient.name()
+        );
+        assert!(
+            median < 1e-6 && most < 1e-3,
+            "{}: {median:e}, {most:e}",
+            program.name()
+        );
+    }
+}
+
+#[test]
+fn gradients_are_those_of_differences() {
+    every_model(Differences(Call::EvalHit));
+}
+
+#[test]
+fn gradients_of_a_shading_point_are_those_of_differences() {
+    every_model(Differences(Call::Eval));
+}
+
+#[derive(Clone, Copy)]
+struct Finite;
+
+impl Visitor for Finite {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        for target in [Target::Exact, Target::Fused, Target::GpuNative] {
+            let program = Program::of::<M>(target);
+            let gradient = program.function(Call::EvalHit).gradient();
+            for case in Case::<M>::many(512, 48) {
+                let is_unit = |x: [f32; 3]| {
+                    let square: f32 = x.iter().map(|x| x * x).sum();
+                    (square - 1.0).abs() < 1e-3
+                };
+                if !is_unit(case.wo) || !is_unit(case.wi) || case.h.is_nan() {
+                    continue;
+                }
+                let inputs = [&case.arguments(Call::EvalHit)[..], &[1.0; 4]].concat();
+                let got = gradient.run(&inputs, Rounding::Once);
+                let name = program.name();
+                assert!(
+                    got.iter().all(|x| x.is_finite()),
+                    "{name} {target:?}: {case}: {got:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn gradients_are_finite_at_the_edges() {
+    every_model(Finite);
+}

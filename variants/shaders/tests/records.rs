@@ -1,0 +1,82 @@
+//! Operations and waiting numbers of each function: a model that grows is noticed.
+
+use crate::support::every_model;
+use hairis_shaders::{Call, Function, Program, Target};
+use hairis_variants::{ModelId, Registered, Visitor};
+use std::fs;
+
+const RECORD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/records/operations.csv");
+
+struct Rows;
+
+impl Visitor for &Rows {
+    type Output = String;
+
+    fn visit<M: Registered>(self) -> String {
+        let mut rows = String::new();
+        for (word, target) in [
+            ("exact", Target::Exact),
+            ("gpu", Target::Gpu),
+            ("gpu-native", Target::GpuNative),
+        ] {
+            let program = Program::of::<M>(target);
+            let hit = program.function(Call::EvalHit);
+            let mut functions: Vec<Function> = program.functions().to_vec();
+            functions.extend(hit.only(&["value"]));
+            functions.push(hit.gradient());
+            for function in functions {
+                let (name, call) = (program.name(), function.name());
+                let (operations, waiting) = (function.operations(), function.waiting());
+                let layout = program.layout();
+                rows += &format!("{name},{word},{call},{operations},{waiting},{layout:08x}\n");
+            }
+        }
+        rows
+    }
+}
+
+/// With `HAIRIS_RECORD=write` in the environment, writes the record.
+#[test]
+fn operations_are_those_recorded() {
+    let mut text = "model,arithmetic,function,operations,waiting,layout\n".to_owned();
+    for id in ModelId::ALL {
+        text += &id.visit(&Rows);
+    }
+    if std::env::var("HAIRIS_RECORD").is_ok_and(|word| word == "write") {
+        fs::write(RECORD, &text).expect("the folder is ours");
+    }
+    let recorded = fs::read_to_string(RECORD).expect("the record is here");
+    for (now, recorded) in text.lines().zip(recorded.lines()) {
+        assert_eq!(
+            now, recorded,
+            "write the record: HAIRIS_RECORD=write cargo test -p hairis-shaders operations"
+        );
+    }
+    assert_eq!(text.lines().count(), recorded.lines().count());
+}
+
+#[derive(Clone, Copy)]
+struct Shared;
+
+impl Visitor for Shared {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        for target in [Target::Exact, Target::Gpu] {
+            let program = Program::of::<M>(target);
+            let count = |call| program.function(call).operations();
+            let (prepare, eval) = (count(Call::Prepare), count(Call::Eval));
+            assert!(count(Call::EvalHit) <= prepare + eval, "no operation twice");
+            let both = count(Call::EvalSampleHit);
+            assert!(
+                both < count(Call::EvalHit) + count(Call::SampleHit),
+                "the hit is shared"
+            );
+        }
+    }
+}
+
+#[test]
+fn fused_calls_share_operations() {
+    every_model(Shared);
+}
