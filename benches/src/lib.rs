@@ -9,8 +9,6 @@ pub mod check;
 pub mod contenders;
 pub mod cpu;
 pub mod entries;
-#[cfg(target_arch = "x86_64")]
-pub mod hand;
 pub mod inputs;
 pub mod math;
 pub mod platform;

@@ -6,6 +6,4 @@ mod cases;
 mod chi2;
 mod claims;
 mod cli;
-#[cfg(target_arch = "x86_64")]
-mod hand;
 mod speed;
