@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""Promise: tables with figures in README files are those of their records. A table stands between the marks
+`<!-- table NAME: written by .ci/tables.py --write -->` and `<!-- end of table -->`, below a line that names record, machine,
+commit and date. `tables.py` fails where a table differs from its record, `tables.py --write` writes it anew."""
+
+import csv
+import os
+import re
+import statistics
+import subprocess
+import sys
+
+RECORDS = "benches/records/"
+LEVELS = {"wide (sse2)": "SSE2", "portable": "SSE2", "avx2+fma": "AVX2", "avx512": "AVX-512"}
+
+
+class Record:
+    """A record: facts of its first lines, and its rows."""
+
+    def __init__(self, name):
+        self.name = name
+        lines = open(RECORDS + name, encoding="utf-8").read().splitlines()
+        self.notes = [line[2:] for line in lines if line.startswith("# ")]
+        self.rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+        if not self.rows:
+            sys.exit(f"{RECORDS}{name} must have rows, got none; measure it again")
+
+    def fact(self, word):
+        """What follows a word in the first lines."""
+        found = [note.split(": ", 1)[1] for note in self.notes if note.startswith(word + ": ")]
+        if word == "date":
+            # Records of a machine have it in their names.
+            found += re.findall(r"\d{4}-\d\d-\d\d", self.name)
+        if not found:
+            sys.exit(f"{RECORDS}{self.name} must name its {word} in its first lines, as `# {word}: ...`")
+        return found[0]
+
+    def caption(self, directory):
+        """Record, machine, commit and date."""
+        link = os.path.relpath(RECORDS + self.name, directory)
+        cpu = re.sub(r"\((R|TM)\)", "", self.fact("CPU"))
+        facts = f"{cpu}, commit {self.fact('commit')[:7]}, {self.fact('date')}"
+        return f"*[Record]({link}) of {facts}.*"
+
+
+def lines_of(header, rows):
+    """A table in Markdown."""
+    line = lambda cells: "| " + " | ".join(cells) + " |"
+    return [line(header).replace("|  |", "| |", 1), "|" + "---|" * len(header), *map(line, rows)]
+
+
+def three(x):
+    """A number with three digits, without zeros at its end."""
+    return f"{x:.3g}"
+
+
+def ratio_of_hand(record, task, call, level):
+    """Median ratio of the runs, with their range where it is above 3%."""
+    ratios = [float(row["ratio"]) for row in record.rows
+              if (row["task"], row["call"], LEVELS[row["level"]]) == (task, call, level)]
+    if not ratios:
+        sys.exit(f"{record.name} has no row {task}, {call}, {level}")
+    low, high = min(ratios), max(ratios)
+    text = f"{statistics.median(ratios):.2f}"
+    return text if high <= 1.03 * low else f"{text} ({low:.2f} to {high:.2f})"
+
+
+def hand_table(goals, rows, words):
+    record = Record("hand.csv")
+    levels = ["SSE2", "AVX2", "AVX-512"]
+    body = [[words(task, call), goals[call, task] if (call, task) in goals else goals[call],
+             *(ratio_of_hand(record, task, call, level) for level in levels)] for task, call in rows]
+    return record, ["", "goal", *levels], body
+
+
+def hand():
+    """Our calls over kernels written by hand."""
+    tasks = {"eval-gaussian": "eval + pdf, Gaussian", "eval-cauchy": "eval + pdf, Cauchy", "sample-gaussian": "sample, Gaussian"}
+    goals = {"slices": "1.05", ("slices", "sample-gaussian"): "1.15", "fresh packets": "1.25", "slices of eight": "1.5"}
+    rows = [(task, call) for call in ("slices", "fresh packets", "slices of eight") for task in tasks]
+    return hand_table(goals, rows, lambda task, call: f"{call}: {tasks[task]}")
+
+
+def hits():
+    """Slices of hits over slices of one hit."""
+    calls = {"hits: eval": "eval + pdf", "hits: sample": "sample"}
+    goals = {("hits: eval", "published"): "2.7", ("hits: sample", "published"): "2.4",
+             ("hits: eval", "matched"): "7.6", ("hits: sample", "matched"): "6.6"}
+    rows = [(task, call) for task in ("published", "matched") for call in calls]
+    record, header, body = hand_table(goals, rows, lambda task, call: f"{task}: {calls[call]}")
+    return record, ["", "goal, AVX2", *header[2:]], body
+
+
+def speed():
+    """Times of a direction, and how many times as fast as the formulas."""
+    record = Record("amd-epyc-family-25-model-1-stepping-1/2026-11-22.csv")
+    times = {(row["group"], row["entry"], row["level"]): float(row["ns"]) for row in record.rows}
+    calls = {
+        "eval": ("eval_pdf", "eval_pdf8", "eval_columns"),
+        "sample": ("sample", "sample8", "sample_columns"),
+        "path-1": ("prepare-sample", "prepare8-sample8", None),
+    }
+    words = {"eval": "eval + pdf", "sample": "sample, with value and density", "path-1": "prepare a hit and sample it once"}
+    rows = []
+    for group, model in [(group, model) for group in calls for model in ("gaussian", "cauchy")] + [
+            (group, model) for group in ("sample", "path-1") for model in ("gaussian-matched", "cauchy-matched")]:
+        key = f"{group}/{model}"
+        one, eight, slices = calls[group]
+        base = times.get((key, "reference", "scalar"))
+        cells = [(one, "scalar"), (eight, "portable"), (eight, "avx2+fma"), (slices, "avx2+fma")]
+        found = [times.get((key, entry, level)) for entry, level in cells]
+        shown = lambda ns: "-" if ns is None else three(ns) + (f", **{three(base / ns)}×**" if base else "")
+        name, matched = model.partition("-")[::2]
+        label = f"`Matched`: {words[group].split(',')[0]}" if matched else words[group]
+        rows.append([f"{label}, {name.capitalize()}", three(base) if base else "-", *map(shown, found)])
+    header = ["", "reference", "one lane", "SSE2, eight lanes", "AVX2+FMA, eight lanes", "AVX2+FMA, slices"]
+    return record, header, rows
+
+
+TABLES = {"hand": hand, "hits": hits, "speed": speed}
+MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
+
+
+def main():
+    write = sys.argv[1:] == ["--write"]
+    if sys.argv[1:] and not write:
+        sys.exit(f"tables.py takes --write or nothing, got {' '.join(sys.argv[1:])}")
+    os.chdir(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+    files = subprocess.run(["git", "ls-files", "*.md"], check=True, capture_output=True, text=True).stdout.split()
+    stale, count = [], 0
+    for name in files:
+        text = open(name, encoding="utf-8").read()
+
+        def anew(match):
+            if match[2] not in TABLES:
+                sys.exit(f"{name}: table must be one of {', '.join(TABLES)}, got {match[2]}")
+            record, header, rows = TABLES[match[2]]()
+            body = [record.caption(os.path.dirname(name) or "."), "", *lines_of(header, rows)]
+            return match[1] + "\n" + "\n".join(body) + "\n\n" + match[4]
+
+        new, found = MARKED.subn(anew, text)
+        if found != text.count("<!-- table "):
+            sys.exit(f"{name}: a mark of a table must have its end, `<!-- end of table -->`")
+        count += found
+        if new != text:
+            stale.append(name)
+            if write:
+                open(name, "w", encoding="utf-8").write(new)
+    if count == 0:
+        sys.exit("no table is marked")
+    if stale and not write:
+        sys.exit(f"tables differ from their records in {', '.join(stale)}: run .ci/tables.py --write")
+    print(f"{count} tables are those of their records")
+
+
+main()
