@@ -5,6 +5,7 @@
 //! | [`first_hair`] | How does a renderer shade a hit on a hair? |
 //! | [`choosing`] | Which model and which sampler suit a scene? |
 //! | [`embedding`] | Which call suits which host, and what does the library ask of it? |
+//! | [`platforms`] | On which CPU, how exact, in which floating-point environment? |
 //! | [`energy`] | How does hair return no more light than it receives? |
 //! | [`resampling`] | How does one ray serve many candidate directions? |
 //! | [`cauchy`] | Is the all-Cauchy model worth its change of look? |
@@ -24,7 +25,8 @@ macro_rules! chapters {
 chapters! {
     first_hair = "guide/first_hair.md";
     choosing = "guide/choosing.md";
-    embedding = "guide/embedding.md";
+    embedding = "../EMBEDDING.md";
+    platforms = "guide/platforms.md";
     energy = "guide/energy.md";
     resampling = "guide/resampling.md";
     cauchy = "guide/cauchy.md";

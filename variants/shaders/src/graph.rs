@@ -5,7 +5,7 @@ use core::panic::Location;
 use hairis::simd::trace::{Arithmetic, Op, Recorder, Traced};
 use std::collections::HashMap;
 
-/// What a node is.
+/// Kind of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// An argument of the function, by its place.
@@ -19,7 +19,7 @@ pub enum Kind {
 /// A node, and the nodes that it reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Node {
-    /// What it is.
+    /// Kind of the node.
     pub kind: Kind,
     /// Its operands: see [`operands`](Self::operands).
     args: [u32; 3],

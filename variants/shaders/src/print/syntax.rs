@@ -1,4 +1,4 @@
-//! What comes before the functions of a program: comments, and the operations that a language lacks.
+//! Text before the functions of a program: comments, and the operations that a language lacks.
 
 use super::{Language, prefix};
 use crate::program::{Program, Target};
@@ -135,7 +135,7 @@ fn $pis_below_infinity(a: f32) -> bool {
 
 ";
 
-/// What is true of the language and the target, for the reader.
+/// Remarks on the language and the target, for the reader.
 fn notes(language: Language, target: Target) -> String {
     let bits = match target {
         Target::Exact => {
