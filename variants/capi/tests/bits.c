@@ -49,17 +49,27 @@ static void rooms(float *to[], int count, size_t n) {
 static void release(float *columns[], int count) {
   for (int c = 0; c < count; ++c) free(columns[c]);
 }
+/* Whether two numbers have the same bits. The direction of a discarded sample may be NaN, of which only that is promised. */
+static int is_same(const void *got, const void *want) {
+  float g, w;
+  memcpy(&g, got, 4);
+  memcpy(&w, want, 4);
+  return memcmp(got, want, 4) == 0 || (g != g && w != w);
+}
 static void same(const void *got, size_t size, const char *what) {
   const unsigned char *want = take(size);
+  int differ = 0;
   compared += size / 4;
-  if (memcmp(got, want, size) == 0) return;
   for (size_t i = 0; i + 4 <= size; i += 4) {
+    const unsigned char *one = (const unsigned char *)got + i;
     float g, w;
-    memcpy(&g, (const unsigned char *)got + i, 4);
+    if (is_same(one, want + i)) continue;
+    memcpy(&g, one, 4);
     memcpy(&w, want + i, 4);
-    if (memcmp(&g, &w, 4) != 0) fprintf(stderr, "number %lu is %.9g, in Rust %.9g\n", (unsigned long)(i / 4), g, w);
+    fprintf(stderr, "number %lu is %.9g, in Rust %.9g\n", (unsigned long)(i / 4), g, w);
+    differ = 1;
   }
-  fail(what);
+  if (differ) fail(what);
 }
 static void same_columns(float *got[], int count, size_t n, const char *what) {
   for (int c = 0; c < count; ++c) same(got[c], n * sizeof(float), what);
@@ -267,7 +277,7 @@ static void table(void) {
   for (int c = 0; c < 15; ++c) {
     const unsigned char *want = take(n * sizeof(float));
     for (size_t i = 0; i < kept; ++i)
-      if (memcmp(c < 4 ? &eval[c][i] : &sample[c - 4][i], want + 4 * row[i], 4) != 0) fail("a hit of the table");
+      if (!is_same(c < 4 ? &eval[c][i] : &sample[c - 4][i], want + 4 * row[i])) fail("a hit of the table");
     compared += kept;
   }
   release(wo, 3), free(h), release(wi, 3), release(xi, 3), release(eval, 4), release(sample, 11);
