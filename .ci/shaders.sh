@@ -2,12 +2,19 @@
 # Promise: generated source is what it says. C and C++ (gcc, clang), SPIR-V and GLSL on a Vulkan driver have the bits of one lane
 # for every model; plain WGSL has its accuracy there, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C and PTX compile; gradients in C
 # have the bits of the graph. Debian's packages: gcc, g++, clang, glslang-tools, spirv-tools, libvulkan-dev, mesa-vulkan-drivers.
-# A tool that is missing is named, and its tests are skipped.
+# A tool that is missing is installed where apt can, and named where it cannot: its tests are skipped.
 #
 #   .ci/shaders.sh             4096 cases per model and function
 #   .ci/shaders.sh 131072      as many cases
 set -euo pipefail
 cd "$(dirname "$0")/.."
+for tool in clang glslangValidator spirv-val; do command -v "$tool" > /dev/null || missing=yes; done
+[ -e /usr/include/vulkan/vulkan.h ] || missing=yes
+compgen -G '/usr/share/vulkan/icd.d/lvp_icd*.json' > /dev/null || missing=yes
+if [ -n "${missing:-}" ]; then
+  { apt-get update -qq && apt-get install -qqy --no-install-recommends clang glslang-tools spirv-tools libvulkan-dev \
+      mesa-vulkan-drivers; } > /dev/null 2>&1 || echo "some tools are missing: their tests are skipped"
+fi
 export HAIRIS_CASES=${1:-4096}
 # Drivers in software alone: results are those of the driver that the bounds were measured on.
 for driver in /usr/share/vulkan/icd.d/lvp_icd*.json; do

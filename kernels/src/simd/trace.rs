@@ -279,7 +279,7 @@ impl<R: Recorder, A: Arithmetic> Neg for Traced<R, A> {
 
 impl<R: Recorder, A: Arithmetic> Lanes for Traced<R, A> {
     type Mask = TracedMask<R>;
-    /// Masks: the chosen number is at least each of the three bounds.
+    /// Masks of the lanes whose number is at least each of the three bounds.
     type Index = [TracedMask<R>; 3];
     type Stored = Self;
     const FUSES: bool = A::FUSES;

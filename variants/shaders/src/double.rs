@@ -1,4 +1,4 @@
-//! A function in double precision: what differences are taken of, and what errors are relative to.
+//! A function in double precision, for differences and errors.
 
 use crate::function::Function;
 use crate::graph::Kind;

@@ -16,12 +16,12 @@ pub enum Kind {
     Mask(bool),
 }
 
-/// A node, and the nodes that it reads.
+/// A node, and the places of the nodes that it reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Node {
-    /// Kind of the node.
+    /// Kind.
     pub kind: Kind,
-    /// Its operands: see [`operands`](Self::operands).
+    /// Operands, as many as the operation reads.
     args: [u32; 3],
 }
 

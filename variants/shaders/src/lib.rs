@@ -26,6 +26,8 @@ pub mod spirv;
 pub use function::{Argument, Function};
 pub use graph::{Graph, Kind, Line, Node, Rounding};
 pub use print::{Language, driver, print};
+#[doc(hidden)]
+pub use program::every_operation;
 pub use program::{Call, Program, Target};
 pub use record::{Field, Record, Shape, numbers};
 

@@ -6,7 +6,7 @@ use crate::record::{Field, Record, Shape, numbers};
 use hairis::Eval;
 use hairis::Hit;
 use hairis::model::{Model, SampleLanes};
-use hairis::simd::trace::{Arithmetic, Exact, Fused, Gpu, GpuNative};
+use hairis::simd::trace::{Arithmetic, Exact, Fused, Gpu, GpuNative, Op};
 use hairis::simd::{LaneStruct, Path, Vec3x};
 use hairis_variants::{Parameters, Registered};
 
@@ -371,4 +371,103 @@ fn function<M: Model, A: Arithmetic>(call: Call, material: &Record, prepared: &R
     }
     let output = output::<M>(call, prepared);
     Function::new(call.name().to_owned(), arguments, output, &graph, &results)
+}
+
+/// A program whose one function has each operation alone: `MulAdd`, `Exp2` and `Log2` with [`Target::GpuNative`] alone.
+///
+/// For tests of printers. Masks are 1 and 0 in the result.
+#[doc(hidden)]
+#[must_use]
+pub fn every_operation(target: Target) -> Program {
+    let mut graph = Graph::default();
+    let [a, b, c] = [0, 1, 2].map(|place| graph.input(place));
+    let [zero, one, infinity] = [0.0, 1.0, f32::INFINITY].map(|x| graph.constant(x));
+    let magic = graph.constant(8_388_608.0 + 115.0);
+    let [least, most] = [-100.0, 100.0].map(|x| graph.constant(x));
+    let mut op = |op: Op, args: [u32; 3]| graph.op(op, args, None);
+    // Exponents.
+    let near = op(Op::Min, [a, most, 0]);
+    let near = op(Op::Max, [near, least, 0]);
+    let (m, n) = (op(Op::Less, [a, b, 0]), op(Op::AtLeast, [b, c, 0]));
+    let masks = [
+        (Op::And, [m, n, 0]),
+        (Op::Or, [m, n, 0]),
+        (Op::Not, [m, 0, 0]),
+        (Op::Less, [a, infinity, 0]),
+        (Op::Less, [infinity, a, 0]),
+    ];
+    let masks = masks.map(|(name, args)| op(name, args));
+    let mut numbers = vec![
+        (Op::Add, [a, b, 0]),
+        (Op::Add, [near, magic, 0]),
+        (Op::Sub, [a, b, 0]),
+        (Op::Mul, [a, b, 0]),
+        (Op::Div, [a, b, 0]),
+        (Op::Neg, [a, 0, 0]),
+        (Op::Sqrt, [a, 0, 0]),
+        (Op::Abs, [a, 0, 0]),
+        (Op::Min, [a, b, 0]),
+        (Op::Max, [a, b, 0]),
+        (Op::TimesSign, [a, b, 0]),
+        (Op::NegateIf, [m, a, 0]),
+        (Op::ShiftLeft23, [a, 0, 0]),
+        (Op::Mantissa, [a, 0, 0]),
+        (Op::Exponent, [a, 0, 0]),
+        (Op::Upper, [a, 0, 0]),
+        (Op::Select, [m, b, c]),
+    ];
+    if target != Target::Exact {
+        numbers.push((Op::MulAdd, [a, b, c]));
+    }
+    if target == Target::GpuNative {
+        numbers.extend([(Op::Exp2, [a, 0, 0]), (Op::Log2, [a, 0, 0])]);
+    }
+    let masks = [m, n].into_iter().chain(masks);
+    numbers.extend(masks.map(|mask| (Op::Select, [mask, one, zero])));
+    let results: Vec<u32> = numbers
+        .iter()
+        .map(|(name, args)| op(*name, *args))
+        .collect();
+    let argument = Argument::Field(Field::new("xi", Shape::Vector));
+    let output = Record::new("operations", &[("result", Shape::Array(results.len()))]);
+    let name = "operations".to_owned();
+    let function = Function::new(name, vec![argument], output, &graph, &results);
+    Program {
+        name: "test".to_owned(),
+        target,
+        material: Record::new("material", &[]),
+        prepared: Record::new("prepared", &[]),
+        functions: vec![function],
+        materials: Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::Rounding;
+    use hairis::simd::Lanes;
+
+    /// Where products with sums may round twice, a difference of products is not that of levels that fuse.
+    #[test]
+    fn differences_of_products_survive_split_fma() {
+        fn difference<A: Arithmetic>(factors: [f32; 4], rounding: Rounding) -> f32 {
+            let (graph, result) = record(|| {
+                let next = &mut 0;
+                let [a, b, c] = three::<A>(next);
+                Lane::<A>::difference_of_products(a, b, c, input(next)).name()
+            });
+            let output = Record::new("difference", &[("difference", Shape::Number)]);
+            let name = "difference".to_owned();
+            Function::new(name, Vec::new(), output, &graph, &[result]).run(&factors, rounding)[0]
+        }
+        let factors = [1.000_000_2, 1.000_000_4, 1.000_000_5, 1.000_000_1];
+        let [a, b, c, d] = factors.map(f64::from);
+        let exact = a * b - c * d;
+        let error = |got: f32| (f64::from(got) / exact - 1.0).abs();
+        assert!(error(difference::<Gpu>(factors, Rounding::Twice)) < 1e-6);
+        assert!(error(difference::<Gpu>(factors, Rounding::Once)) < 1e-6);
+        assert!(error(difference::<Fused>(factors, Rounding::Once)) < 1e-6);
+        assert!(error(difference::<Fused>(factors, Rounding::Twice)) > 0.1);
+    }
 }

@@ -64,6 +64,17 @@ pub(crate) fn run(program: &Path, function: &str, inputs: &[f32]) -> Vec<f32> {
         .collect()
 }
 
+/// The driver of a program by gcc, without contraction, in a folder of its own. `None` if there is no gcc.
+pub(crate) fn compiled(program: &Program) -> Option<(TempDir, PathBuf)> {
+    if !exists("gcc") {
+        return None;
+    }
+    let dir = TempDir::new().expect("a folder for the program");
+    let binary = compile(dir.path(), &source(program), "gcc", &["-std=c99", "-O1"]);
+    let binary = binary.unwrap_or_else(|error| panic!("{}: {error}", program.name()));
+    Some((dir, binary))
+}
+
 fn source(program: &Program) -> String {
     print(program, Language::C) + &driver(program, Language::C)
 }
@@ -140,9 +151,9 @@ impl Visitor for Gradients {
         let mut program = Program::of::<M>(Target::Exact);
         let gradient = program.function(Call::EvalHit).gradient();
         program.keep(vec![gradient.clone()]);
-        let dir = TempDir::new().expect("a folder for the program");
-        let binary = compile(dir.path(), &source(&program), "gcc", &["-std=c99", "-O1"]);
-        let binary = binary.unwrap_or_else(|error| panic!("{}: {error}", program.name()));
+        let Some((_dir, binary)) = compiled(&program) else {
+            return;
+        };
         let cases = Case::<M>::many(1024, 49);
         let inputs: Vec<_> = cases
             .iter()
@@ -161,9 +172,7 @@ impl Visitor for Gradients {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn gradients_in_c_have_the_bits_of_the_graph() {
-    if exists("gcc") {
-        every_model(Gradients);
-    }
+    every_model(Gradients);
 }
 
 /// The control: what contraction does is found.

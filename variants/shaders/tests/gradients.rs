@@ -34,7 +34,8 @@ impl Visitor for Differences {
         let function = program.function(self.0);
         let gradient = function.gradient();
         let (count, results) = (function.inputs().len(), function.output().len());
-        assert_eq!(gradient.output().len(), results + count);
+        let len = gradient.output().len();
+        assert_eq!(len, results + count, "results, and a derivative each");
         let mut random = Random(46);
         let mut errors = Vec::new();
         for case in Case::<M>::smooth(48, 47) {

@@ -4,6 +4,7 @@ mod bits;
 mod c;
 mod gradients;
 mod languages;
+mod operations;
 mod records;
 mod support;
 mod vulkan;

@@ -12,14 +12,14 @@ use tempfile::TempDir;
 const RUNNER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vulkan.c");
 
 /// The program that runs a shader, and a folder for its files.
-struct Driver {
-    dir: TempDir,
+pub(crate) struct Driver {
+    pub(crate) dir: TempDir,
     runner: PathBuf,
 }
 
 impl Driver {
     /// `None` where there is no compiler or no Vulkan.
-    fn new() -> Option<Self> {
+    pub(crate) fn new() -> Option<Self> {
         let dir = TempDir::new().expect("a folder for shaders");
         let runner = dir.path().join("vulkan");
         let arguments = [
@@ -37,7 +37,13 @@ impl Driver {
         Some(Self { dir, runner })
     }
 
-    fn run(&self, module: &Path, entry: &str, function: &Function, inputs: &[f32]) -> Vec<f32> {
+    pub(crate) fn run(
+        &self,
+        module: &Path,
+        entry: &str,
+        function: &Function,
+        inputs: &[f32],
+    ) -> Vec<f32> {
         let [input, output] = ["input", "output"].map(|name| self.dir.path().join(name));
         let bytes: Vec<u8> = inputs.iter().flat_map(|x| x.to_le_bytes()).collect();
         fs::write(&input, bytes).expect("the folder is ours");

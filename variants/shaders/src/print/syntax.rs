@@ -135,7 +135,7 @@ fn $pis_below_infinity(a: f32) -> bool {
 
 ";
 
-/// Remarks on the language and the target, for the reader.
+/// Comments on the language and the target.
 fn notes(language: Language, target: Target) -> String {
     let bits = match target {
         Target::Exact => {
