@@ -62,6 +62,11 @@ fn sun_pdf(ray: Vec3) -> f32 {
     f32::from(u8::from(ray.dot(sun()) > SUN)) / (2.0 * PI * (1.0 - SUN))
 }
 
+#[expect(clippy::cast_possible_truncation, reason = "at most 255")]
+fn encode(x: f32) -> u8 {
+    (255.0 * x.clamp(0.0, 1.0).powf(1.0 / 2.2)) as u8
+}
+
 fn main() -> std::io::Result<()> {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let hairs = grow(&mut rng);
@@ -105,12 +110,11 @@ fn main() -> std::io::Result<()> {
                 (ray, pdf) = (frame.to_world(sample.wi), sample.pdf);
             }
         }
-        let encode = |x: f32| (255.0 * (x / SAMPLES as f32).min(1.0).powf(1.0 / 2.2)) as u8;
-        pixels.extend(mean.to_array().map(encode));
+        pixels.extend((mean / SAMPLES as f32).to_array().map(encode));
     }
     let path = std::env::args_os().nth(1).unwrap_or("tuft.ppm".into());
     let mut file = std::fs::File::create(&path)?;
-    write!(file, "P6 {SIDE} {SIDE} 255\n")?;
+    writeln!(file, "P6 {SIDE} {SIDE} 255")?;
     file.write_all(&pixels)?;
     println!("wrote {}", path.display());
     Ok(())

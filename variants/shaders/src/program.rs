@@ -448,7 +448,7 @@ mod tests {
     use crate::graph::Rounding;
     use hairis::simd::Lanes;
 
-    /// Where products with sums may round twice, a difference of products is not that of levels that fuse.
+    /// A difference of products is not that of levels that fuse where products with sums may round twice.
     #[test]
     fn differences_of_products_survive_split_fma() {
         fn difference<A: Arithmetic>(factors: [f32; 4], rounding: Rounding) -> f32 {
