@@ -78,8 +78,10 @@ done
 
 part 'two Rust libraries'
 rustc --edition 2024 --crate-type staticlib -O "$capi/tests/other.rs" -o "$work/libother.a"
-gcc -std=c11 "${strict[@]}" "$capi/tests/two.c" -o "$work/two" "$work/libother.a" "$prefix/lib/libhairis.a" -lpthread -ldl -lm
-"$work/two"
+for order in "$work/libother.a $prefix/lib/libhairis.a" "$prefix/lib/libhairis.a $work/libother.a"; do
+  gcc -std=c11 "${strict[@]}" "$capi/tests/two.c" -o "$work/two" $order -lpthread -ldl -lm
+  "$work/two"
+done
 
 part wheel
 "$python" -m pip install -q --force-reinstall --no-deps "$work"/wheels/*.whl

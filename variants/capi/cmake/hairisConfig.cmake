@@ -7,7 +7,7 @@ if(NOT TARGET hairis::hairis)
     IMPORTED_SONAME "libhairis.so.1"
     INTERFACE_INCLUDE_DIRECTORIES "${_hairis_prefix}/include")
 endif()
-# Behind other static libraries of Rust, if there are any.
+# Built without std: it stands beside other static libraries of Rust.
 if(NOT TARGET hairis::static)
   add_library(hairis::static STATIC IMPORTED)
   set_target_properties(hairis::static PROPERTIES

@@ -208,7 +208,7 @@ structs! {
         /// Glints of the secondary highlight.
         glints: Glints,
     }
-    /// Material of any model: see [`crate::handles`].
+    /// Material of any model: a head with the tag, and the Rust handle behind it.
     #[repr(align(16))]
     RawMaterial = "hairis_material" {
         /// Tag of the model, and the energy.
@@ -216,7 +216,7 @@ structs! {
         /// Constants of the material.
         body: [u8; MATERIAL_SIZE - HEAD_SIZE],
     }
-    /// BSDF of any model: see [`crate::handles`].
+    /// BSDF of any model: a head with the tag, and the Rust handle behind it.
     #[repr(align(16))]
     RawBsdf = "hairis_bsdf" {
         /// Tag of the model.

@@ -10,6 +10,15 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     unsafe { abort() }
 }
 
-/// Personality routine, which the compiled `core` names even where `panic` is `abort`. Nothing calls it.
+// Personality routine, which the compiled `core` names even where `panic` is `abort`: nothing calls it. Weak, so that the one of
+// another Rust library in the program counts, whichever the linker meets first; hidden, so that it is not exported.
+#[cfg(not(any(windows, target_vendor = "apple")))]
+core::arch::global_asm!(
+    ".weak rust_eh_personality",
+    ".hidden rust_eh_personality",
+    "rust_eh_personality:",
+);
+
+#[cfg(any(windows, target_vendor = "apple"))]
 #[unsafe(no_mangle)]
 extern "C" fn rust_eh_personality() {}

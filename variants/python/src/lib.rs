@@ -7,6 +7,7 @@ mod arrays;
 mod bsdf;
 mod fields;
 mod material;
+mod values;
 
 use bsdf::Bsdf;
 use fields::{Model, models_of_library};
