@@ -1,7 +1,7 @@
 #!/bin/bash
 # Promise: the properties hold for other numbers than those of CI, and the slow tests pass. By hand: every round draws a seed,
-# prints it, and runs the tests of kernels and variants with it; then those of the kernels compiled for x86-64-v3, and the
-# tests that are ignored for their time, run once.
+# prints it, and runs the tests of kernels and variants with it; then those of the kernels compiled for x86-64-v3, the energy of
+# 40,000 materials, and the tests that are ignored for their time, run once.
 #
 #   .ci/long.sh          one round
 #   .ci/long.sh ROUNDS   so many
@@ -20,6 +20,8 @@ if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then
   # A target folder of its own, so that neither build discards the other's work.
   CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-target}/v3 RUSTFLAGS="$RUSTFLAGS -Ctarget-cpu=x86-64-v3" cargo test -q -p hairis --all-features || failed=1
 fi
+# Energy of 10,000 materials of each kind and bell: figures are printed.
+HAIRIS_MATERIALS=10000 cargo test -q --locked --release -p hairis --all-features --test main conserves_energy -- --nocapture || failed=1
 cargo test -q --locked -p hairis-harness --lib -- --ignored || failed=1
 cargo test -q --locked --release -p hairis-render --test main -- --ignored || failed=1
 exit $failed

@@ -93,25 +93,45 @@ impl<'a> HitColumns<'a> {
         check_lengths3(len, names, [x, y, z])?;
         Ok([u, v, w, self.h.unwrap_or_default(), x, y, z])
     }
+
+    /// The columns of the hits, of directions and of uniform numbers, of one length.
+    #[inline]
+    pub(crate) fn with_both(
+        &self,
+        wi: [&'a [f32]; 3],
+        xi: [&'a [f32]; 3],
+    ) -> Result<[&'a [f32]; 10], LengthError> {
+        let [u, v, w, h, x, y, z] = self.with(wi, WI)?;
+        check_lengths3(self.len(), XI, xi)?;
+        Ok([u, v, w, h, x, y, z, xi[0], xi[1], xi[2]])
+    }
 }
 
 impl<'a> EvalColumns<'a> {
     /// All columns; empty ones where they are left out.
     #[inline]
-    pub(crate) fn columns(self, expected: usize) -> Result<[&'a mut [f32]; 4], LengthError> {
+    pub(crate) fn columns(
+        self,
+        expected: usize,
+        names: [&'static str; 4],
+    ) -> Result<[&'a mut [f32]; 4], LengthError> {
         let [r, g, b] = three(self.value);
-        present(expected, VALUE_PDF, [r, g, b, self.pdf])
+        present(expected, names, [r, g, b, self.pdf])
     }
 }
 
 impl<'a> SampleColumns<'a> {
     /// All columns; empty ones where they are left out.
     #[inline]
-    pub(crate) fn columns(self, expected: usize) -> Result<[&'a mut [f32]; 11], LengthError> {
+    pub(crate) fn columns(
+        self,
+        expected: usize,
+        names: [&'static str; 11],
+    ) -> Result<[&'a mut [f32]; 11], LengthError> {
         let ([u, v, w], [r, g, b]) = (three(self.wi), three(self.value));
         let [wr, wg, wb] = three(self.weight);
         let all = [u, v, w, r, g, b, self.pdf, wr, wg, wb, self.slot];
-        present(expected, SAMPLE, all)
+        present(expected, names, all)
     }
 }
 
@@ -125,6 +145,21 @@ pub(crate) const VALUE_PDF: [&str; 4] = ["value.r", "value.g", "value.b", "pdf"]
 pub(crate) const SAMPLE: [&str; 11] = [
     "wi.u", "wi.v", "wi.w", "value.r", "value.g", "value.b", "pdf", "weight.r", "weight.g",
     "weight.b", "slot",
+];
+
+/// Names of the columns of a sample beside those of an evaluation.
+pub(crate) const SAMPLE_OF_BOTH: [&str; 11] = [
+    "sample.wi.u",
+    "sample.wi.v",
+    "sample.wi.w",
+    "sample.value.r",
+    "sample.value.g",
+    "sample.value.b",
+    "sample.pdf",
+    "sample.weight.r",
+    "sample.weight.g",
+    "sample.weight.b",
+    "sample.slot",
 ];
 
 /// Names of the columns of a sample that a path tracer needs.

@@ -3,6 +3,7 @@
 pub(crate) mod albedo;
 mod angles;
 mod bell;
+mod conserving;
 mod matched;
 mod published;
 pub(crate) mod quadrature;
@@ -11,6 +12,7 @@ mod sampling;
 mod truncated;
 mod view;
 
+use conserving::AlbedoFit;
 use published::{PublishedMaterial, PublishedPrepared};
 use view::{HairLobes, HairView};
 
@@ -47,8 +49,10 @@ impl<B: Bell> Model for Published<B> {
     type Params = HairParams;
     type Material<C: Scalar> = PublishedMaterial<C>;
     type Prepared<C: Scalar> = PublishedPrepared<C>;
+    type Fit<C: Scalar> = AlbedoFit<C>;
 
     const LOBES: &'static [&'static str] = &["r", "tt", "trt", "glint"];
+    const CONSERVES: bool = false;
 
     #[inline]
     fn material(&self, params: &HairParams) -> PublishedMaterial<f32> {
@@ -112,10 +116,34 @@ impl<B: Bell> Model for Published<B> {
         )
     }
 
+    #[inline]
+    fn fit(material: &PublishedMaterial<f32>) -> AlbedoFit<f32> {
+        AlbedoFit::of::<B>(&material.lobes)
+    }
+
     #[inline(always)]
-    fn conserve<L: Lanes>(prepared: &PublishedPrepared<L::Stored>) -> PublishedPrepared<L::Stored> {
+    fn unfit<L: Lanes, C: Broadcast<L>>(fit: &AlbedoFit<C>) -> L {
+        fit.refused.lanes()
+    }
+
+    #[inline(always)]
+    fn fitted<L: Lanes, C: Broadcast<L>>(
+        fit: &AlbedoFit<C>,
+        prepared: &PublishedPrepared<L::Stored>,
+    ) -> PublishedPrepared<L::Stored> {
         PublishedPrepared {
-            view: albedo::conserve::<B, L>(&prepared.view),
+            view: conserving::fitted::<L, C>(fit, &prepared.view),
+            ..*prepared
+        }
+    }
+
+    #[inline(always)]
+    fn conserving<L: Lanes>(
+        prepared: &PublishedPrepared<L::Stored>,
+        lanes: L::Mask,
+    ) -> PublishedPrepared<L::Stored> {
+        PublishedPrepared {
+            view: conserving::integrated::<B, L>(&prepared.view, lanes),
             ..*prepared
         }
     }

@@ -27,7 +27,7 @@
 //! | build | material | [`Material::new`]; eight different ones: [`Material8::pack`] |
 //! | prepare | hit | [`Material::prepare`]; eight hits: [`Material::prepare8`], [`Material8::prepare8`] |
 //! | evaluate, sample | direction | [`Bsdf::eval_pdf`], [`Bsdf::sample`]; eight directions at one hit: [`Bsdf::eval_pdf8`], [`Bsdf::sample8`]; one at each of eight hits: [`Bsdf8::eval_pdf8`], [`Bsdf8::sample8`]; columns: [`Bsdf::eval_columns`], [`Bsdf::sample_columns`] |
-//! | both in one | hit and direction | slices of hits: [`Material::eval_hits`], [`Material::sample_hits`]; a material per hit: [`MaterialTable`](columns::MaterialTable) |
+//! | both in one | hit and direction | [`Material::eval_hit`], [`Material::sample_hit`]; slices of hits: [`Material::eval_hits`], [`Material::sample_hits`], [`Material::eval_sample_hits`]; a material per hit: [`MaterialTable`](columns::MaterialTable) |
 //!
 //! The [`guide`] shades a hit with light sampling, chooses models and samplers, and embeds the crate in other hosts.
 //!

@@ -3,22 +3,22 @@
 //! Implement [`LobeModel`] for a model given by its lobes, [`Bell`] for another bell in the published model, and [`Model`] for
 //! one that computes several lobes together. Vectors are in [`simd`](crate::simd), elementary functions in [`math`].
 
+mod conserving;
 mod direction;
-mod energy;
 pub(crate) mod lobe;
 mod lobe_model;
 pub mod math;
 
 pub use crate::hair::{Bell, FourBells, GRAZING, MatchedBell, TwoBells};
 pub use crate::handle::{DynBsdf, DynBsdf8};
+pub use conserving::Conserving;
 pub use direction::Direction;
-pub use energy::Conserving;
 pub use lobe::{Lobe, LobeMask, PerLobe};
 pub use lobe_model::LobeModel;
 #[doc(hidden)]
 pub use lobe_model::Mixed;
 
-use crate::simd::{Broadcast, LaneStruct, Lanes, Scalar, Vec3x};
+use crate::simd::{Broadcast, LaneStruct, Lanes, Path, Scalar, Schedule, Vec3x};
 use glam::{Vec3, Vec3A};
 use wide::f32x8;
 
@@ -51,8 +51,14 @@ pub trait Model: Copy {
     /// Constants of a shading point.
     type Prepared<C: Scalar>: LaneStruct<Number = C, One = Self::Prepared<f32>, Eight = Self::Prepared<f32x8>>;
 
+    /// Constants that [`Conserving`] adds to those of a material: `[C; 0]` for none.
+    type Fit<C: Scalar>: LaneStruct<Number = C, One = Self::Fit<f32>, Eight = Self::Fit<f32x8>>;
+
     /// Names of the lobes, in slot order: at most [`Lobe::COUNT`].
     const LOBES: &'static [&'static str];
+    /// Whether the parameters alone decide how much light returns, as albedos or absorption do: [`Conserving`] and
+    /// [`conserving`](Self::conserving) change nothing then.
+    const CONSERVES: bool;
 
     /// The constants of a material.
     fn material(&self, params: &Self::Params) -> Self::Material<f32>;
@@ -87,13 +93,54 @@ pub trait Model: Copy {
         xi: [L; 3],
     ) -> SampleLanes<L>;
 
-    /// The shading point with each channel scaled so that no more light returns than arrives: see
-    /// [`Bsdf::conserving`](crate::Bsdf::conserving).
+    /// The shading point with each channel scaled so that no more light returns than arrives, in the lanes of the mask:
+    /// see [`Bsdf::conserving`](crate::Bsdf::conserving). Other lanes keep their bits.
     ///
-    /// Provided: the shading point as it is, for models whose parameters see to that.
+    /// Provided: the shading point as it is, for models that [conserve energy](Self::CONSERVES) by their parameters.
     #[inline(always)]
-    fn conserve<L: Lanes>(prepared: &Self::Prepared<L::Stored>) -> Self::Prepared<L::Stored> {
+    fn conserving<L: Lanes>(
+        prepared: &Self::Prepared<L::Stored>,
+        _lanes: L::Mask,
+    ) -> Self::Prepared<L::Stored> {
         *prepared
+    }
+
+    /// The constants of [`fitted`](Self::fitted) for a material.
+    ///
+    /// Provided: zeros.
+    #[inline]
+    fn fit(_material: &Self::Material<f32>) -> Self::Fit<f32> {
+        LaneStruct::make(&Path::Root, &mut |_| 0.0)
+    }
+
+    /// As [`conserving`](Self::conserving), by the constants of the material; the shading point as it is where they are
+    /// [`unfit`](Self::unfit).
+    ///
+    /// Provided: the shading point as it is.
+    #[inline(always)]
+    fn fitted<L: Lanes, C: Broadcast<L>>(
+        _fit: &Self::Fit<C>,
+        prepared: &Self::Prepared<L::Stored>,
+    ) -> Self::Prepared<L::Stored> {
+        *prepared
+    }
+
+    /// 1 where the constants of [`fitted`](Self::fitted) are not accurate enough, so that [`conserving`](Self::conserving) has
+    /// to follow, else 0.
+    ///
+    /// Provided: 0.
+    #[inline(always)]
+    fn unfit<L: Lanes, C: Broadcast<L>>(_fit: &Self::Fit<C>) -> L {
+        L::splat(0.0)
+    }
+
+    /// 1 where [`conserving`](Self::conserving) has to follow [`prepare`](Self::prepare), else 0. Handles ask once per call and not
+    /// in `prepare`, whose registers an integral would take.
+    ///
+    /// Provided: 0.
+    #[inline(always)]
+    fn integrates<L: Lanes, C: Broadcast<L>>(_material: &Self::Material<C>) -> L {
+        L::splat(0.0)
     }
 
     /// Directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
@@ -129,6 +176,17 @@ impl<L: Lanes> Hit<L> {
         Self {
             wo: wo.into(),
             h: L::keep(number, (-one).max(one.min(h))),
+        }
+    }
+}
+
+impl Hit {
+    /// Every number [alone](crate::simd::Schedule::alone).
+    #[inline(always)]
+    pub(crate) fn alone(self) -> Self {
+        Self {
+            wo: self.wo.alone(),
+            h: self.h.alone(),
         }
     }
 }

@@ -2,9 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic: that is how it fails")]
 
 mod by_channel;
+mod conserving;
 mod default_level;
 mod family;
 mod frames;
+mod hits;
 mod math;
 mod params;
 mod rows;

@@ -64,6 +64,7 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
     type Prepared<C: Scalar> = ChiangPrepared<C>;
 
     const LOBES: &'static [&'static str] = &["r", "tt", "trt", "trrt+"];
+    const CONSERVES: bool = true;
 
     #[inline]
     fn material(&self, params: &ChiangParams) -> ChiangMaterial<f32> {

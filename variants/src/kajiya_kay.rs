@@ -87,6 +87,7 @@ impl LobeModel for KajiyaKay {
     type Prepared<C: Scalar> = KajiyaKayPrepared<C>;
 
     const LOBES: &'static [&'static str] = &["diffuse", "specular"];
+    const CONSERVES: bool = true;
 
     #[expect(
         clippy::cast_possible_truncation,

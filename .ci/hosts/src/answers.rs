@@ -4,7 +4,8 @@ use glam::Vec3;
 use hairis::columns::{EvalColumns, HitColumns, SampleColumns};
 use hairis::model::Model;
 use hairis::resample::{CandidateColumns, Counts, Partition, WeightColumns, choose};
-use hairis::{Bsdf, Conserving, FiberFrame, Hit, Lobe, LobeMask, Material};
+use hairis::simd::f32x8;
+use hairis::{Bsdf, FiberFrame, Hit, Lobe, LobeMask, Material, Vec3x8};
 use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
 
 /// Lengths of columns at one hit: less than a packet, one, pairs of the widest packets, and more than a chunk.
@@ -280,6 +281,32 @@ impl Rows {
             .expect("one length");
         (eval, sample)
     }
+
+    /// The answers of a material whose hits integrate their lobes, as those of C do.
+    fn integrated<M: Model>(&self, material: &Material<M>) -> ([Vec<f32>; 4], [Vec<f32>; 11]) {
+        let n = self.h.len();
+        let (mut eval, mut sample) = (results::<4>(n), results::<11>(n));
+        for i in 0..n {
+            let at = |columns: &[Vec<f32>; 3]| [0, 1, 2].map(|k| f32x8::splat(columns[k][i]));
+            let direction = |[x, y, z]: [f32x8; 3]| Vec3x8::new(x, y, z);
+            let hits = Hit::new(direction(at(&self.wo)), f32x8::splat(self.h[i]));
+            let bsdf = material.prepare8(&hits).conserving();
+            let (e, s) = (
+                bsdf.eval_pdf8(&direction(at(&self.wi))),
+                bsdf.sample8(&at(&self.xi)),
+            );
+            let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
+            let sampled = [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot];
+            let evaluated = e.value.into_iter().chain([e.pdf]);
+            for (column, lanes) in eval.iter_mut().zip(evaluated) {
+                column[i] = lanes.as_array()[0];
+            }
+            for (column, lanes) in sample.iter_mut().zip(sampled) {
+                column[i] = lanes.as_array()[0];
+            }
+        }
+        (eval, sample)
+    }
 }
 
 /// The parameters as the energy has them: scaled, or as they are.
@@ -302,7 +329,7 @@ impl Visitor for OverHits<'_> {
         let Self(values, energy, rows) = self;
         let params = params::<M>(values, energy);
         if energy == 1 {
-            rows.answers(&Material::new(&Conserving(M::MODEL), &params))
+            rows.integrated(&Material::new(&M::MODEL, &params))
         } else {
             rows.answers(&Material::new(&M::MODEL, &params))
         }

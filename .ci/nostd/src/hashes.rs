@@ -12,8 +12,8 @@ use hairis::columns::{EvalColumns, SampleColumns};
 use hairis::model::{Model, math};
 use hairis::simd::{Broadcast, Kernel, Lanes, Level, Vec3x, f32x8};
 use hairis::{
-    Bsdf, Bsdf8, FiberFrame, FiberFrame8, Gaussian, HairParams, Hit, Hit8, Lobe, LobeMask, Matched,
-    Material, Material8, Published, Vec3x8, random,
+    Bsdf, Bsdf8, Conserving, FiberFrame, FiberFrame8, Gaussian, HairParams, Hit, Hit8, Lobe,
+    LobeMask, Matched, Material, Material8, Published, Vec3x8, random,
 };
 use hairis_variants::chiang::{FarField, OffsetNodes};
 use hairis_variants::{
@@ -288,6 +288,11 @@ fn models() {
     );
     every_entry(Cauchy::PAPER.model(), "cauchy");
     every_entry(Cauchy::PAPER.matched(), "cauchy/matched");
+    every_entry(Conserving(Published(Gaussian)), "gaussian/conserving");
+    every_entry(
+        Conserving(Cauchy::PAPER.matched()),
+        "cauchy/matched-conserving",
+    );
     every_entry(KajiyaKay, "kajiya-kay");
     every_entry(Chiang::<false>, "chiang");
     every_entry(Chiang::<true>, "chiang/by-channel");

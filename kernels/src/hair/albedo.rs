@@ -1,11 +1,11 @@
 //! Directional albedo of the published model, by quadrature over each bell.
 
-use super::{HairLobes, HairView};
+use super::HairView;
 use crate::PerLobe;
 use crate::hair::quadrature::{COARSE, GRADED};
 use crate::model::Bell;
 use crate::model::math::{FRAC_PI_2_LOW, half_atan2, sin_cos_half_turn};
-use crate::simd::{Broadcast, Lanes, lanes3, store3};
+use crate::simd::{Broadcast, Lanes, lanes3};
 use core::f32::consts::FRAC_PI_2;
 
 /// Nodes of an integral over `x`, the distance from the centre of a bell in widths: even in `u`, with `x = u / (1 - u^2)`, but
@@ -108,39 +108,28 @@ fn lobe<L: Lanes, C: Broadcast<L>>(view: &HairView<C>, l: usize, area: L, color:
     ]
 }
 
-/// The view terms with each channel of the lobes divided by its albedo where that is above 1, to within 2e-4.
+/// Directional albedo of each channel, to within 2e-4.
 #[inline(always)]
-pub(crate) fn conserve<B: Bell, L: Lanes>(view: &HairView<L::Stored>) -> HairView<L::Stored> {
+pub(super) fn channels<B: Bell, L: Lanes>(view: &HairView<L::Stored>) -> [L; 3] {
     let hair = &view.lobes;
-    let (four, most) = (L::splat(4.0), L::splat(f32::MAX));
+    let four = L::splat(4.0);
     let [r, tt, trt] = inclinations::<B, L, L::Stored, _>(view, &COARSE);
     let glints = hair.azimuth_area[1].lanes() * hair.strength[3].lanes();
     let r = r * 4.0 * hair.strength[0].lanes();
     let tt = tt * hair.azimuth_area[0].lanes() * hair.strength[1].lanes();
     let trt = trt * four.mul_add(hair.strength[2].lanes(), glints);
-    let mut colors = [
+    let colors = [
         lanes3(&hair.color_r),
         lanes3(&hair.color_tt),
         lanes3(&hair.color_trt),
     ];
+    let mut albedo = [L::splat(0.0); 3];
     let mut c = 0;
     while c < 3 {
-        let albedo = r.mul_add(colors[0][c], tt.mul_add(colors[1][c], trt * colors[2][c]));
-        // The second operand wins over NaN: the albedo towards a wo that is no direction.
-        let by = L::quotient(L::splat(1.0), albedo.min(most).max(L::splat(1.0)));
-        colors[0][c] = colors[0][c] * by;
-        colors[1][c] = colors[1][c] * by;
-        colors[2][c] = colors[2][c] * by;
+        albedo[c] = r.mul_add(colors[0][c], tt.mul_add(colors[1][c], trt * colors[2][c]));
         c += 1;
     }
-    let [r, tt, trt] = colors;
-    let lobes = HairLobes {
-        color_r: store3(r),
-        color_tt: store3(tt),
-        color_trt: store3(trt),
-        ..*hair
-    };
-    HairView { lobes, ..*view }
+    albedo
 }
 
 /// [`longitudinal`] of R, TT and TRT.

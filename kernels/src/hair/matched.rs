@@ -12,6 +12,7 @@ pub use bell::MatchedBell;
 use material::MatchedMaterial;
 use prepared::MatchedPrepared;
 
+use crate::hair::conserving::{self, AlbedoFit};
 use crate::hair::{
     Angles, LobeTerms, albedo, finish_eval, finish_lobes, finish_sample, mix_densities,
 };
@@ -99,8 +100,10 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
     type Params = HairParams;
     type Material<C: Scalar> = MatchedMaterial<C>;
     type Prepared<C: Scalar> = MatchedPrepared<C, BANDS>;
+    type Fit<C: Scalar> = AlbedoFit<C>;
 
     const LOBES: &'static [&'static str] = &["r", "tt", "trt", "glint"];
+    const CONSERVES: bool = false;
 
     #[inline]
     fn material(&self, params: &HairParams) -> MatchedMaterial<f32> {
@@ -174,12 +177,34 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
         )
     }
 
+    #[inline]
+    fn fit(material: &MatchedMaterial<f32>) -> AlbedoFit<f32> {
+        AlbedoFit::of::<B>(&material.lobes)
+    }
+
     #[inline(always)]
-    fn conserve<L: Lanes>(
+    fn unfit<L: Lanes, C: Broadcast<L>>(fit: &AlbedoFit<C>) -> L {
+        fit.refused.lanes()
+    }
+
+    #[inline(always)]
+    fn fitted<L: Lanes, C: Broadcast<L>>(
+        fit: &AlbedoFit<C>,
         prepared: &MatchedPrepared<L::Stored, BANDS>,
     ) -> MatchedPrepared<L::Stored, BANDS> {
         MatchedPrepared {
-            view: albedo::conserve::<B, L>(&prepared.view),
+            view: conserving::fitted::<L, C>(fit, &prepared.view),
+            ..*prepared
+        }
+    }
+
+    #[inline(always)]
+    fn conserving<L: Lanes>(
+        prepared: &MatchedPrepared<L::Stored, BANDS>,
+        lanes: L::Mask,
+    ) -> MatchedPrepared<L::Stored, BANDS> {
+        MatchedPrepared {
+            view: conserving::integrated::<B, L>(&prepared.view, lanes),
             ..*prepared
         }
     }

@@ -197,7 +197,7 @@ impl<M: Model> Bsdf8<M> {
 
 /// The direction, which callers promise to be of unit length; 0 and what is not finite are black.
 #[inline(always)]
-fn unit(wi: Vec3x<f32>) -> Vec3x<f32> {
+pub(super) fn unit(wi: Vec3x<f32>) -> Vec3x<f32> {
     let length_sq = wi.dot(wi);
     debug_assert!(
         length_sq == 0.0 || !length_sq.is_finite() || (length_sq - 1.0).abs() < 0.02,

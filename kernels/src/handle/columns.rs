@@ -83,7 +83,7 @@ impl<M: Model> Bsdf<M> {
             }
             out => {
                 check_lengths3(xi[0].len(), XI, xi)?;
-                let mut out = out.columns(xi[0].len())?;
+                let mut out = out.columns(xi[0].len(), SAMPLE)?;
                 clean_upper_halves();
                 let row = AtBsdf::<M, SomeSamples>::new(&self.prepared);
                 self.level.run_rows(row, xi, &mut out);

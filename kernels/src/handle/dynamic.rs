@@ -95,7 +95,7 @@ pub trait DynBsdf: Debug + Send + Sync {
     fn set_lobes(&mut self, lobes: LobeMask);
 
     /// Returns no more light than arrives: see [`Bsdf::conserving`].
-    fn conserve(&mut self);
+    fn set_conserving(&mut self);
 
     /// See [`Bsdf::with_level`].
     fn set_level(&mut self, level: Level);
@@ -132,7 +132,7 @@ pub trait DynBsdf8: Debug + Send + Sync {
     fn set_lobes(&mut self, lobes: LobeMask);
 
     /// Returns no more light than arrives: see [`Bsdf8::conserving`].
-    fn conserve(&mut self);
+    fn set_conserving(&mut self);
 
     /// See [`Bsdf8::with_level`].
     fn set_level(&mut self, level: Level);
@@ -188,7 +188,7 @@ impl<M: Model> DynBsdf for Bsdf<M> {
     }
     set! {
         set_lobes(lobes: LobeMask) = with_lobes;
-        conserve() = conserving;
+        set_conserving() = conserving;
         set_level(level: Level) = with_level;
     }
 }
@@ -210,7 +210,7 @@ impl<M: Model> DynBsdf8 for Bsdf8<M> {
     }
     set! {
         set_lobes(lobes: LobeMask) = with_lobes;
-        conserve() = conserving;
+        set_conserving() = conserving;
         set_level(level: Level) = with_level;
     }
 }

@@ -1,12 +1,15 @@
 //! Slice calls over hits: each entry has a hit and a direction of its own.
 
-use crate::columns::{EvalColumns, HitColumns, LengthError, SampleColumns, WI, XI, check_length};
-use crate::handle::kernels::{AtHits, EightHits, HitEvals, HitRow, HitSamples};
+use crate::columns::{
+    EvalColumns, HitColumns, LengthError, SAMPLE, SAMPLE_OF_BOTH, SampleColumns, VALUE_PDF, WI, XI,
+    check_length,
+};
+use crate::handle::kernels::{AtHits, EightHits, HitEvals, HitEvalsSamples, HitRow, HitSamples};
 use crate::model::Model;
-use crate::simd::Level;
 use crate::simd::columns::copy_few;
 use crate::simd::dispatch::clean_upper_halves;
-use crate::{Material, Material8};
+use crate::simd::{Level, Vec3x};
+use crate::{Bsdf8, Hit, Hit8, Material, Material8};
 use core::fmt;
 use wide::f32x8;
 
@@ -104,7 +107,7 @@ impl<M: Model> Material<M> {
         wi: [&[f32]; 3],
         out: EvalColumns<'_>,
     ) -> Result<(), LengthError> {
-        self.run::<HitEvals, 4>(hits.with(wi, WI)?, out.columns(hits.len())?);
+        self.run::<HitEvals, _, _>(hits.with(wi, WI)?, out.columns(hits.len(), VALUE_PDF)?);
         Ok(())
     }
 
@@ -139,20 +142,103 @@ impl<M: Model> Material<M> {
         xi: [&[f32]; 3],
         out: SampleColumns<'_>,
     ) -> Result<(), LengthError> {
-        self.run::<HitSamples, 11>(hits.with(xi, XI)?, out.columns(hits.len())?);
+        self.run::<HitSamples, _, _>(hits.with(xi, XI)?, out.columns(hits.len(), SAMPLE)?);
+        Ok(())
+    }
+
+    /// Both of [`eval_hits`](Self::eval_hits) and [`sample_hits`](Self::sample_hits), for less than the two calls.
+    ///
+    /// A path tracer with light sampling needs both: the direction towards a light, and the path's next one. The bits are those of
+    /// [`eval_hits`](Self::eval_hits) and [`sample_hits`](Self::sample_hits), and each hit is prepared once.
+    ///
+    /// # Errors
+    ///
+    /// If the slices differ in length; nothing is written then. Columns of `samples` have names that begin with `sample.`.
+    ///
+    /// ```
+    /// use hairis::{Gaussian, HairParams, Material, Published};
+    /// use hairis::columns::{EvalColumns, HitColumns, SampleColumns};
+    /// let hair = Material::new(&Published(Gaussian), &HairParams::default());
+    /// let (wo, wi, xi) = ([[0.0; 11], [0.6; 11], [0.8; 11]], [[0.1; 11], [0.7; 11], [0.7; 11]], [[0.5; 11]; 3]);
+    /// let hits = HitColumns { wo: [&wo[0], &wo[1], &wo[2]], h: None };
+    /// let (mut towards_light, mut next) = ([0.0; 11], [0.0; 11]);
+    /// let evals = EvalColumns { pdf: Some(&mut towards_light), ..EvalColumns::default() };
+    /// let samples = SampleColumns { pdf: Some(&mut next), ..SampleColumns::default() };
+    /// hair.eval_sample_hits(hits, [&wi[0], &wi[1], &wi[2]], evals, [&xi[0], &xi[1], &xi[2]], samples)?;
+    /// assert!(towards_light[10] > 0.0 && next[10] > 0.0);
+    /// # Ok::<(), hairis::columns::LengthError>(())
+    /// ```
+    #[inline]
+    pub fn eval_sample_hits(
+        &self,
+        hits: HitColumns<'_>,
+        wi: [&[f32]; 3],
+        evals: EvalColumns<'_>,
+        xi: [&[f32]; 3],
+        samples: SampleColumns<'_>,
+    ) -> Result<(), LengthError> {
+        let inputs = hits.with_both(wi, xi)?;
+        let outputs = both(hits.len(), evals, samples)?;
+        self.run::<HitEvalsSamples, _, _>(inputs, outputs);
         Ok(())
     }
 
     #[inline]
-    fn run<K: HitRow<M, N>, const N: usize>(
+    fn run<K: HitRow<M, I, N>, const I: usize, const N: usize>(
         &self,
-        inputs: [&[f32]; 7],
+        inputs: [&[f32]; I],
         mut outputs: [&mut [f32]; N],
     ) {
         clean_upper_halves();
+        if M::integrates::<f32, f32>(&self.constants) > 0.0 {
+            return in_packets::<M, K, I, N>(inputs, &mut outputs, |hits| self.prepare8(hits));
+        }
         let row = AtHits::<M, K>::new(&self.constants);
         self.level.run_rows(row, inputs, &mut outputs);
     }
+}
+
+/// The rows of hits through packets in memory: for materials that integrate their lobes, beside which the memory is nothing, so
+/// that rows need no code with an integral.
+#[cold]
+#[inline(never)]
+fn in_packets<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize>(
+    inputs: [&[f32]; I],
+    outputs: &mut [&mut [f32]; N],
+    prepare: impl Fn(&Hit8) -> Bsdf8<M>,
+) {
+    for first in (0..inputs[0].len()).step_by(8) {
+        let input = inputs.map(|column| packet(column.get(first..).unwrap_or_default()));
+        let wo = Vec3x::new(input[0], input[1], input[2]);
+        let bsdf = prepare(&Hit::new(wo, input[3]));
+        let rows = K::at8(&bsdf, &input);
+        for (lanes, column) in rows.iter().zip(outputs.iter_mut()) {
+            copy_few(
+                lanes.as_array(),
+                column.get_mut(first..).unwrap_or_default(),
+            );
+        }
+    }
+}
+
+/// The columns of evaluations and of samples, empty ones where they are left out.
+#[inline]
+fn both<'a>(
+    len: usize,
+    evals: EvalColumns<'a>,
+    samples: SampleColumns<'a>,
+) -> Result<[&'a mut [f32]; 15], LengthError> {
+    let [r, g, b, p] = evals.columns(len, VALUE_PDF)?;
+    let [u, v, w, sr, sg, sb, sp, wr, wg, wb, slot] = samples.columns(len, SAMPLE_OF_BOTH)?;
+    Ok([r, g, b, p, u, v, w, sr, sg, sb, sp, wr, wg, wb, slot])
+}
+
+/// The first eight numbers of a column, and 0 beyond its end.
+#[inline(always)]
+fn packet(column: &[f32]) -> f32x8 {
+    let mut lanes = [0.0; 8];
+    copy_few(column, &mut lanes);
+    f32x8::new(lanes)
 }
 
 impl<M: Model> MaterialTable<'_, M> {
@@ -168,7 +254,7 @@ impl<M: Model> MaterialTable<'_, M> {
         wi: [&[f32]; 3],
         out: EvalColumns<'_>,
     ) -> Result<(), HitsError> {
-        self.run::<HitEvals, 4>(hits.with(wi, WI)?, out.columns(hits.len())?)
+        self.run::<HitEvals, _, _>(hits.with(wi, WI)?, out.columns(hits.len(), VALUE_PDF)?)
     }
 
     /// As [`Material::sample_hits`], each hit with the material of its index, on the level of the first material.
@@ -183,13 +269,35 @@ impl<M: Model> MaterialTable<'_, M> {
         xi: [&[f32]; 3],
         out: SampleColumns<'_>,
     ) -> Result<(), HitsError> {
-        self.run::<HitSamples, 11>(hits.with(xi, XI)?, out.columns(hits.len())?)
+        self.run::<HitSamples, _, _>(hits.with(xi, XI)?, out.columns(hits.len(), SAMPLE)?)
+    }
+
+    /// As [`Material::eval_sample_hits`], each hit with the material of its index, on the level of the first material.
+    ///
+    /// A path tracer with light sampling needs both: the direction towards a light, and the path's next one. The bits are those of
+    /// [`eval_hits`](Self::eval_hits) and [`sample_hits`](Self::sample_hits), and each hit is prepared once.
+    ///
+    /// # Errors
+    ///
+    /// If the columns differ in length, or an index is not in the table; nothing is written then. Columns of `samples` have names that begin with `sample.`.
+    #[inline]
+    pub fn eval_sample_hits(
+        &self,
+        hits: HitColumns<'_>,
+        wi: [&[f32]; 3],
+        evals: EvalColumns<'_>,
+        xi: [&[f32]; 3],
+        samples: SampleColumns<'_>,
+    ) -> Result<(), HitsError> {
+        let inputs = hits.with_both(wi, xi)?;
+        let outputs = both(hits.len(), evals, samples)?;
+        self.run::<HitEvalsSamples, _, _>(inputs, outputs)
     }
 
     /// Runs of one material as slice calls, and the rest eight hits at a time, one material per lane.
-    fn run<K: HitRow<M, N>, const N: usize>(
+    fn run<K: HitRow<M, I, N>, const I: usize, const N: usize>(
         &self,
-        inputs: [&[f32]; 7],
+        inputs: [&[f32]; I],
         mut outputs: [&mut [f32]; N],
     ) -> Result<(), HitsError> {
         clean_upper_halves();
@@ -227,22 +335,22 @@ impl<M: Model> MaterialTable<'_, M> {
                 .each_mut()
                 .map(|column| column.get_mut(at..at + done).unwrap_or_default());
             if done == alike {
-                level.run_rows(AtHits::<M, K>::new(&first.constants), inputs, &mut outputs);
+                first.with_level(level).run::<K, I, N>(inputs, outputs);
             } else {
                 // Lanes past the last hit have the material of the first.
                 let mut lanes = [first; 8];
                 for (lane, index) in lanes.iter_mut().zip(rest) {
                     *lane = material(*index).unwrap_or(first);
                 }
-                let input = inputs.map(|column| {
-                    let mut lanes = [0.0; 8];
-                    copy_few(column, &mut lanes);
-                    f32x8::new(lanes)
-                });
-                let Material8 { constants, .. } = Material8::pack(lanes);
-                let output = level.run(EightHits::<M, K, N>::new(&constants, &input));
-                for (lanes, column) in output.iter().zip(outputs) {
-                    copy_few(lanes.as_array(), column);
+                let material = Material8::pack(lanes).with_level(level);
+                if material.integrating().is_some() {
+                    in_packets::<M, K, I, N>(inputs, &mut outputs, |hits| material.prepare8(hits));
+                } else {
+                    let input = inputs.map(packet);
+                    let row = EightHits::<M, K, I, N>::new(&material.constants, &input);
+                    for (lanes, column) in level.run(row).iter().zip(outputs) {
+                        copy_few(lanes.as_array(), column);
+                    }
                 }
             }
             at += done;

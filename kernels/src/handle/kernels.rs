@@ -1,9 +1,9 @@
 //! Functions of a model as kernels of the vector layer: packets of eight, and rows of columns.
 
-use crate::model::{Eval8, Hit8, LobeEval8, Model, Sample8, SampleLanes};
+use crate::model::{Eval, Eval8, Hit8, LobeEval8, Model, Sample8, SampleLanes};
 use crate::resample::{Weighed8, Weighing};
 use crate::simd::{Broadcast, Kernel, Lanes, Row, Scalar, Vec3x, fresh_lanes3, store3};
-use crate::{Hit, PerLobe, Vec3x8};
+use crate::{Bsdf8, Hit, PerLobe, Vec3x8};
 use core::marker::PhantomData;
 use wide::f32x8;
 
@@ -147,9 +147,7 @@ pub(crate) struct ValuePdf;
 impl<M: Model> Row<3, 4> for AtBsdf<'_, M, ValuePdf> {
     #[inline(always)]
     fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 4] {
-        let eval = M::eval::<L, f32>(self.prepared, Vec3x::new(x, y, z));
-        let [r, g, b] = eval.value;
-        [r, g, b, eval.pdf]
+        value_pdf(M::eval::<L, f32>(self.prepared, Vec3x::new(x, y, z)))
     }
 }
 
@@ -191,38 +189,91 @@ fn columns<L>(s: SampleLanes<L>) -> [L; 11] {
     [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot]
 }
 
-/// Columns of hits: constants of each hit are made and used in registers.
-pub(crate) trait HitRow<M: Model, const N: usize> {
-    /// Numbers of each lane, from `wo`, `h` and a direction or three uniform numbers.
-    fn row<L: Lanes, C: Broadcast<L>>(material: &M::Material<C>, input: [L; 7]) -> [L; N];
+/// Columns of hits: constants of each hit are made and used in registers. Of the `I` inputs the first four are `wo` and `h`.
+pub(crate) trait HitRow<M: Model, const I: usize, const N: usize> {
+    /// Numbers of each lane at a prepared hit.
+    fn at<L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>, input: [L; I]) -> [L; N];
+
+    /// Numbers of each lane at hits of eight lanes, by the kernels of packets.
+    fn at8(bsdf: &Bsdf8<M>, input: &[f32x8; I]) -> [f32x8; N];
+
+    /// Numbers of each lane.
+    #[inline(always)]
+    fn row<L: Lanes, C: Broadcast<L>>(material: &M::Material<C>, input: [L; I]) -> [L; N] {
+        let wo = Vec3x::new(input[0], input[1], input[2]);
+        let prepared = M::prepare::<L, C>(material, Hit::new(wo, input[3]));
+        Self::at::<L, L::Stored>(&prepared, input)
+    }
 }
 
-/// Columns of S and of the density.
+/// Columns of S and of the density, from a direction.
 pub(crate) struct HitEvals;
-impl<M: Model> HitRow<M, 4> for HitEvals {
+impl<M: Model> HitRow<M, 7, 4> for HitEvals {
     #[inline(always)]
-    fn row<L: Lanes, C: Broadcast<L>>(
-        material: &M::Material<C>,
-        [u, v, w, h, x, y, z]: [L; 7],
+    fn at<L: Lanes, C: Broadcast<L>>(
+        prepared: &M::Prepared<C>,
+        [_, _, _, _, x, y, z]: [L; 7],
     ) -> [L; 4] {
-        let prepared = M::prepare::<L, C>(material, Hit::new(Vec3x::new(u, v, w), h));
-        let eval = M::eval::<L, L::Stored>(&prepared, Vec3x::new(x, y, z));
-        let [r, g, b] = eval.value;
-        [r, g, b, eval.pdf]
+        value_pdf(M::eval::<L, C>(prepared, Vec3x::new(x, y, z)))
+    }
+
+    #[inline]
+    fn at8(bsdf: &Bsdf8<M>, [_, _, _, _, x, y, z]: &[f32x8; 7]) -> [f32x8; 4] {
+        value_pdf(bsdf.eval_pdf8(&Vec3x::new(*x, *y, *z)))
     }
 }
 
-/// Columns of samples.
+/// Columns of samples, from three uniform numbers.
 pub(crate) struct HitSamples;
-impl<M: Model> HitRow<M, 11> for HitSamples {
+impl<M: Model> HitRow<M, 7, 11> for HitSamples {
     #[inline(always)]
-    fn row<L: Lanes, C: Broadcast<L>>(
-        material: &M::Material<C>,
-        [u, v, w, h, x, y, z]: [L; 7],
+    fn at<L: Lanes, C: Broadcast<L>>(
+        prepared: &M::Prepared<C>,
+        [_, _, _, _, x, y, z]: [L; 7],
     ) -> [L; 11] {
-        let prepared = M::prepare::<L, C>(material, Hit::new(Vec3x::new(u, v, w), h));
-        columns(M::sample::<L, L::Stored>(&prepared, [x, y, z]))
+        columns(M::sample::<L, C>(prepared, [x, y, z]))
     }
+
+    #[inline]
+    fn at8(bsdf: &Bsdf8<M>, [_, _, _, _, x, y, z]: &[f32x8; 7]) -> [f32x8; 11] {
+        columns(bsdf.sample8(&[*x, *y, *z]))
+    }
+}
+
+/// Columns of S and of the density, from a direction, and of samples, from three uniform numbers.
+pub(crate) struct HitEvalsSamples;
+impl<M: Model> HitRow<M, 10, 15> for HitEvalsSamples {
+    #[inline(always)]
+    fn at<L: Lanes, C: Broadcast<L>>(
+        prepared: &M::Prepared<C>,
+        [_, _, _, _, u, v, w, x, y, z]: [L; 10],
+    ) -> [L; 15] {
+        let eval = M::eval::<L, C>(prepared, Vec3x::new(u, v, w));
+        joined(
+            value_pdf(eval),
+            columns(M::sample::<L, C>(prepared, [x, y, z])),
+        )
+    }
+
+    #[inline]
+    fn at8(bsdf: &Bsdf8<M>, [_, _, _, _, u, v, w, x, y, z]: &[f32x8; 10]) -> [f32x8; 15] {
+        let eval = bsdf.eval_pdf8(&Vec3x::new(*u, *v, *w));
+        joined(value_pdf(eval), columns(bsdf.sample8(&[*x, *y, *z])))
+    }
+}
+
+/// The numbers of an evaluation in the order of its columns.
+#[inline(always)]
+fn value_pdf<L>(eval: Eval<L>) -> [L; 4] {
+    let [r, g, b] = eval.value;
+    [r, g, b, eval.pdf]
+}
+
+/// The numbers of an evaluation and those of a sample.
+#[inline(always)]
+fn joined<L>([r, g, b, p]: [L; 4], sample: [L; 11]) -> [L; 15] {
+    let [u, v, w, sr, sg, sb, sp, wr, wg, wb, slot] = sample;
+    [r, g, b, p, u, v, w, sr, sg, sb, sp, wr, wg, wb, slot]
 }
 
 /// Rows of hits on one material.
@@ -249,28 +300,28 @@ impl<M: Model, K> Clone for AtHits<'_, M, K> {
 }
 impl<M: Model, K> Copy for AtHits<'_, M, K> {}
 
-impl<M: Model, K: HitRow<M, N>, const N: usize> Row<7, N> for AtHits<'_, M, K> {
+impl<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize> Row<I, N> for AtHits<'_, M, K> {
     const OPTIONAL: bool = true;
     // A measure of the code that makes these constants. For two packets of `Matched` with 25 bands, 904 bytes, it is 60 kB, where
     // CPUs cache 32 to 64; with 9 bands, 520 bytes, it fits.
     const PAIRS: bool = size_of::<M::Prepared<f32>>() <= 768;
 
     #[inline(always)]
-    fn row<L: Lanes>(self, input: [L; 7]) -> [L; N] {
+    fn row<L: Lanes>(self, input: [L; I]) -> [L; N] {
         K::row::<L, f32>(self.material, input)
     }
 }
 
 /// Eight hits, each on a material of its own.
-pub(crate) struct EightHits<'a, M: Model, K, const N: usize> {
+pub(crate) struct EightHits<'a, M: Model, K, const I: usize, const N: usize> {
     material: &'a M::Material<f32x8>,
-    input: &'a [f32x8; 7],
+    input: &'a [f32x8; I],
     columns: PhantomData<K>,
 }
 
-impl<'a, M: Model, K, const N: usize> EightHits<'a, M, K, N> {
+impl<'a, M: Model, K, const I: usize, const N: usize> EightHits<'a, M, K, I, N> {
     #[inline(always)]
-    pub(crate) fn new(material: &'a M::Material<f32x8>, input: &'a [f32x8; 7]) -> Self {
+    pub(crate) fn new(material: &'a M::Material<f32x8>, input: &'a [f32x8; I]) -> Self {
         Self {
             material,
             input,
@@ -279,26 +330,24 @@ impl<'a, M: Model, K, const N: usize> EightHits<'a, M, K, N> {
     }
 }
 
-impl<M: Model, K: HitRow<M, N>, const N: usize> Kernel for EightHits<'_, M, K, N> {
+impl<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize> Kernel
+    for EightHits<'_, M, K, I, N>
+{
     type Output = [f32x8; N];
     // Packing the materials takes longer than what more registers would save.
     const MANY_REGISTERS: bool = false;
 
     #[inline(always)]
     fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; N] {
-        let [u, v, w, h, x, y, z] = self.input;
-        let input = [
-            u.fresh_lanes(),
-            v.fresh_lanes(),
-            w.fresh_lanes(),
-            h.fresh_lanes(),
-            x.fresh_lanes(),
-            y.fresh_lanes(),
-            z.fresh_lanes(),
-        ];
+        let mut input = [L::splat(0.0); I];
+        let mut i = 0;
+        while i < I {
+            input[i] = self.input[i].fresh_lanes();
+            i += 1;
+        }
         let row = K::row::<L, f32x8>(self.material, input);
         let mut out = [f32x8::ZERO; N];
-        let mut i = 0;
+        i = 0;
         while i < N {
             out[i] = row[i].store();
             i += 1;

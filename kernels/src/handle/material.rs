@@ -1,11 +1,11 @@
 //! Materials: a model with its parameters.
 
-use super::bsdf::{Bsdf, Bsdf8};
+use super::bsdf::{Bsdf, Bsdf8, unit};
 use super::kernels::Prepare;
 use super::{handle_impls, level_methods};
 use crate::model::Model;
-use crate::simd::{LaneStruct, Level, Schedule, f32x8};
-use crate::{Hit, Hit8, PerLobe};
+use crate::simd::{LaneStruct, Level, Schedule, Vec3x, f32x8};
+use crate::{Eval, Hit, Hit8, PerLobe, Sample};
 use core::f32::consts::FRAC_PI_2;
 use core::mem::MaybeUninit;
 use glam::Vec3;
@@ -55,13 +55,56 @@ impl<M: Model> Material<M> {
     #[inline]
     #[must_use]
     pub fn prepare(&self, hit: impl Into<Hit>) -> Bsdf<M> {
-        let Hit { wo, h } = hit.into();
-        let hit = Hit {
-            wo: wo.alone(),
-            h: h.alone(),
-        };
+        let hit = hit.into();
+        if M::integrates::<f32, f32>(&self.constants) > 0.0 {
+            return self.prepare_integrated(hit);
+        }
         Bsdf {
-            prepared: M::prepare_one(&self.constants, hit),
+            prepared: M::prepare_one(&self.constants, hit.alone()),
+            level: self.level,
+        }
+    }
+
+    /// Value and density at one hit: the bits of [`prepare`](Self::prepare) and [`Bsdf::eval_pdf`] for less, as constants that the
+    /// evaluation does not need are not made, and the others stay in registers.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use hairis::{Gaussian, HairParams, Material, Published};
+    /// let hair = Material::new(&Published(Gaussian), &HairParams::brown());
+    /// let (wo, wi) = (Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.0, 0.6, 0.8));
+    /// assert_eq!(hair.eval_hit(wo, wi), hair.prepare(wo).eval_pdf(wi));
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn eval_hit(&self, hit: impl Into<Hit>, wi: impl Into<Vec3x<f32>>) -> Eval {
+        let (hit, wi) = (hit.into(), wi.into());
+        if M::integrates::<f32, f32>(&self.constants) > 0.0 {
+            return self.prepare_integrated(hit).eval_pdf(wi);
+        }
+        let prepared = M::prepare_one(&self.constants, hit.alone());
+        M::eval::<f32, f32>(&prepared, unit(wi).alone())
+    }
+
+    /// A sample of one hit: the bits of [`prepare`](Self::prepare) and [`Bsdf::sample`] for less.
+    #[inline]
+    #[must_use]
+    pub fn sample_hit(&self, hit: impl Into<Hit>, xi: [f32; 3]) -> Option<Sample> {
+        let hit = hit.into();
+        if M::integrates::<f32, f32>(&self.constants) > 0.0 {
+            return self.prepare_integrated(hit).sample(xi);
+        }
+        let prepared = M::prepare_one(&self.constants, hit.alone());
+        let xi = [xi[0].alone(), xi[1].alone(), xi[2].alone()];
+        Sample::from_lanes(&M::sample::<f32, f32>(&prepared, xi))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn prepare_integrated(&self, hit: Hit) -> Bsdf<M> {
+        let prepared = M::prepare_one(&self.constants, hit.alone());
+        Bsdf {
+            prepared: M::conserving::<f32>(&prepared, true),
             level: self.level,
         }
     }
@@ -81,10 +124,12 @@ impl<M: Model> Material<M> {
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
         let (material, level) = (&self.constants, self.level);
-        level.run_into(Prepare::<M, f32, _> { material, hits }, |prepared| Bsdf8 {
-            prepared,
-            level,
-        })
+        let kernel = Prepare::<M, f32, _> { material, hits };
+        if M::integrates::<f32, f32>(material) > 0.0 {
+            let prepared = level.run(kernel);
+            return Bsdf8 { prepared, level }.conserving();
+        }
+        level.run_into(kernel, |prepared| Bsdf8 { prepared, level })
     }
 
     /// The largest directional albedo over all `wo` and the three channels: above 1 the hair gives back more light
@@ -187,8 +232,18 @@ impl<M: Model> Material8<M> {
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
         let (material, level) = (&self.constants, self.level);
-        level.run_into(Prepare::<M, f32x8, _> { material, hits }, |prepared| {
-            Bsdf8 { prepared, level }
-        })
+        let kernel = Prepare::<M, f32x8, _> { material, hits };
+        if let Some(lanes) = self.integrating() {
+            let prepared = level.run(kernel);
+            return Bsdf8 { prepared, level }.conserving_where(lanes);
+        }
+        level.run_into(kernel, |prepared| Bsdf8 { prepared, level })
+    }
+
+    /// Where lanes integrate the lobes, if any does.
+    #[inline(always)]
+    pub(super) fn integrating(&self) -> Option<f32x8> {
+        let lanes = M::integrates::<f32x8, f32x8>(&self.constants);
+        lanes.simd_gt(f32x8::ZERO).any().then_some(lanes)
     }
 }

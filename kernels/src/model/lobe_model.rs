@@ -100,6 +100,9 @@ pub trait LobeModel: Copy {
 
     /// Names of the lobes, in slot order: 1 to 4.
     const LOBES: &'static [&'static str];
+    /// Whether the parameters alone decide how much light returns: see [`Model::CONSERVES`]. Of other models given by their lobes
+    /// [`Conserving`](crate::Conserving) makes no material, which is an error of the compiler.
+    const CONSERVES: bool = false;
 
     /// The constants of a material.
     fn material(&self, params: &Self::Params) -> Self::Material<f32>;
@@ -225,7 +228,9 @@ impl<M: LobeModel> Model for M {
     type Params = M::Params;
     type Material<C: Scalar> = M::Material<C>;
     type Prepared<C: Scalar> = Mixed<M::Prepared<C>, C>;
+    type Fit<C: Scalar> = [C; 0];
 
+    const CONSERVES: bool = M::CONSERVES;
     const LOBES: &'static [&'static str] = {
         assert!(
             !M::LOBES.is_empty() && M::LOBES.len() <= Lobe::COUNT,

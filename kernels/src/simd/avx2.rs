@@ -260,6 +260,14 @@ impl Choice<Avx2> for Indices {
         }))
     }
     #[inline(always)]
+    fn look_up_eight(self, upper: __m256, table: &[f32; 8]) -> Avx2 {
+        Avx2(avx2!({
+            let offset = _mm256_and_si256(_mm256_castps_si256(upper), _mm256_set1_epi32(4));
+            let number = _mm256_or_si256(self.number, offset);
+            _mm256_permutevar8x32_ps(_mm256_loadu_ps(table.as_ptr()), number)
+        }))
+    }
+    #[inline(always)]
     fn look_up_three(self, table: &[f32; 4]) -> Avx2 {
         self.look_up(table)
     }

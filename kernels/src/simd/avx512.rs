@@ -238,6 +238,15 @@ impl Choice<Avx512> for Indices16 {
         )))
     }
     #[inline(always)]
+    fn look_up_eight(self, upper: __mmask16, table: &[f32; 8]) -> Avx512 {
+        Avx512(avx512!({
+            let four = _mm512_set1_epi32(4);
+            let number = _mm512_mask_or_epi32(self.number, upper, self.number, four);
+            let eight = _mm512_broadcast_f32x8(_mm256_loadu_ps(table.as_ptr()));
+            _mm512_permutexvar_ps(number, eight)
+        }))
+    }
+    #[inline(always)]
     fn look_up_three(self, table: &[f32; 4]) -> Avx512 {
         self.look_up(table)
     }

@@ -39,6 +39,12 @@ pub trait Choice<L: Lanes<Index = Self>>: Copy {
     fn look_up(self, table: &[f32; 4]) -> L {
         self.choose(lanes4(table))
     }
+    /// The entry of each lane's index, and 4 more where the mask is set.
+    #[inline(always)]
+    fn look_up_eight(self, upper: L::Mask, table: &[f32; 8]) -> L {
+        let [low, high] = halves(table);
+        L::select(upper, self.look_up(&high), self.look_up(&low))
+    }
     /// As [`look_up`](Self::look_up), of a table whose last two entries are equal.
     #[inline(always)]
     fn look_up_three(self, table: &[f32; 4]) -> L {
@@ -49,4 +55,10 @@ pub trait Choice<L: Lanes<Index = Self>>: Copy {
     fn look_up_half(self, table: &[f32; 2]) -> L {
         self.choose_half([table[0].lanes(), table[1].lanes()])
     }
+}
+
+/// The first four of eight, and the last.
+#[inline(always)]
+pub(super) fn halves<C: Copy>([a, b, c, d, e, f, g, h]: &[C; 8]) -> [[C; 4]; 2] {
+    [[*a, *b, *c, *d], [*e, *f, *g, *h]]
 }

@@ -24,7 +24,7 @@ pub trait Row<const I: usize, const N: usize>: Copy {
 /// columns in memory.
 macro_rules! each {
     ($i:ident < $n:ident, $body:expr) => {
-        each!($i < $n, $body, 0 1 2 3 4 5 6 7 8 9 10)
+        each!($i < $n, $body, 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14)
     };
     ($i:ident < $n:ident, $body:expr, $($column:literal)*) => {
         $(
@@ -198,7 +198,7 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
         row: R,
         at: usize,
     ) {
-        const { assert!(I <= 11 && N <= 11, "every column is read or written") };
+        const { assert!(I <= 15 && N <= 15, "every column is read or written") };
         let mut input = [L::splat(0.0); I];
         each!(i < I, {
             if !R::OPTIONAL || self.absent >> i & 1 == 0 {

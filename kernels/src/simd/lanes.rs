@@ -9,7 +9,7 @@
 //! Comparisons are false for NaN. `min` and `max` return their second operand when either is NaN,
 //! as the machine does, so that one `min` at the end of a model turns a NaN into its bound.
 
-use super::choice::Choice;
+use super::choice::{Choice, halves};
 use super::schedule::Schedule;
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -146,6 +146,16 @@ pub trait Broadcast<L: Lanes>: Scalar {
     fn look_up(table: &[Self; 4], index: L::Index) -> L {
         index.choose(lanes4(table))
     }
+    /// The entry of each lane's index, and 4 more where `upper` is set.
+    #[inline(always)]
+    fn look_up_eight(table: &[Self; 8], index: L::Index, upper: L::Mask) -> L {
+        let [low, high] = halves(table);
+        L::select(
+            upper,
+            index.choose(lanes4(&high)),
+            index.choose(lanes4(&low)),
+        )
+    }
     /// The entry of each lane's index, of a table whose last two entries are equal: for less.
     #[inline(always)]
     fn look_up_three(table: &[Self; 4], index: L::Index) -> L {
@@ -166,6 +176,10 @@ impl<L: Lanes> Broadcast<L> for f32 {
     #[inline(always)]
     fn look_up(table: &[Self; 4], index: L::Index) -> L {
         index.look_up(table)
+    }
+    #[inline(always)]
+    fn look_up_eight(table: &[Self; 8], index: L::Index, upper: L::Mask) -> L {
+        index.look_up_eight(upper, table)
     }
     #[inline(always)]
     fn look_up_three(table: &[Self; 4], index: L::Index) -> L {

@@ -197,6 +197,13 @@ impl<L: Lanes> Choice<Pair<L>> for (L::Index, L::Index) {
         Pair(self.0.look_up(table), self.1.look_up(table))
     }
     #[inline(always)]
+    fn look_up_eight(self, upper: (L::Mask, L::Mask), table: &[f32; 8]) -> Pair<L> {
+        Pair(
+            self.0.look_up_eight(upper.0, table),
+            self.1.look_up_eight(upper.1, table),
+        )
+    }
+    #[inline(always)]
     fn look_up_three(self, table: &[f32; 4]) -> Pair<L> {
         Pair(self.0.look_up_three(table), self.1.look_up_three(table))
     }

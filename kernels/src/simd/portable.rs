@@ -298,6 +298,20 @@ macro_rules! eight_lanes {
                     _ => three,
                 }
             }
+            // Eight loads in place of seven blends, each of which is six instructions of SSE2.
+            #[inline(always)]
+            fn look_up_eight(self, upper: f32x8, table: &[f32; 8]) -> $Lanes {
+                const FOUR: u32x8 = u32x8::new([4; 8]);
+                // A set mask is -1 as an integer.
+                let [a, b, c] = [self[0].to_bits(), self[1].to_bits(), self[2].to_bits()];
+                let number = (upper.to_bits() & FOUR) - (a + b + c);
+                let [i, j, k, l, m, n, o, p] = number.to_array();
+                let entry = |index: u32| table[index as usize & 7];
+                let low = [entry(i), entry(j), entry(k), entry(l)];
+                let high = [entry(m), entry(n), entry(o), entry(p)];
+                let ([a, b, c, d], [e, f, g, h]) = (low, high);
+                <$Lanes>::wrap(f32x8::new([a, b, c, d, e, f, g, h]))
+            }
             #[inline(always)]
             fn to_number(self) -> $Lanes {
                 let (one, [a, b, c]) = (splat(1.0), self);

@@ -195,6 +195,10 @@ impl Choice<f32> for usize {
         table[self & 3]
     }
     #[inline(always)]
+    fn look_up_eight(self, upper: bool, table: &[f32; 8]) -> f32 {
+        table[(self & 3) + 4 * Self::from(upper)]
+    }
+    #[inline(always)]
     fn look_up_three(self, table: &[f32; 4]) -> f32 {
         table[self & 3]
     }

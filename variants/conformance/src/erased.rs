@@ -261,7 +261,7 @@ macro_rules! with {
 
             pub(crate) fn conserving(&self) -> Box<dyn $object> {
                 let mut other = self.boxed();
-                other.conserve();
+                other.set_conserving();
                 other
             }
         }

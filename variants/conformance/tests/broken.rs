@@ -256,8 +256,10 @@ impl Model for Fiber {
     type Params = Params;
     type Material<C: Scalar> = Faulty<Material<C>>;
     type Prepared<C: Scalar> = Faulty<Point<C>>;
+    type Fit<C: Scalar> = [C; 0];
 
     const LOBES: &'static [&'static str] = &["diffuse", "cone"];
+    const CONSERVES: bool = true;
 
     fn material(&self, params: &Params) -> Faulty<Material<f32>> {
         let (d, s) = (params.kd.iter().sum::<f32>(), params.ks.iter().sum::<f32>());

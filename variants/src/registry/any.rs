@@ -103,7 +103,7 @@ macro_rules! restricted {
             #[inline]
             #[must_use]
             pub fn conserving(mut self) -> Self {
-                self.conserve();
+                self.set_conserving();
                 self
             }
         }

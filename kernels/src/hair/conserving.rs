@@ -1,0 +1,116 @@
+//! Energy conservation of the published model: each channel divided by its albedo where that is above 1.
+//!
+//! The albedo of a material depends on the inclination of `wo` alone. [`AlbedoFit`] holds it as polynomials; where they are not
+//! accurate enough, every shading point integrates the lobes.
+
+mod fit;
+
+use super::albedo::channels;
+use super::view::{HairLobes, HairView};
+use crate::model::Bell;
+use crate::simd::{Broadcast, Choice, Lanes, lanes3, store3};
+
+/// Pieces on each side of the normal plane: the look-up has an entry for each of both sides.
+const PIECES: usize = 4;
+/// Coefficients of a piece.
+const POWERS: usize = 5;
+
+crate::simd::lane_struct! {
+    /// Albedo of each channel as a function of the inclination of `wo`: on each side of the normal plane, the lower one first,
+    /// four polynomials of degree 4 in a warped inclination.
+    ///
+    /// With `x = sqrt(cos / (1 + |sin|))` of the inclination the pieces have equal lengths in `v = (1 + near) x / (x + near)`.
+    /// Next to a pole the albedo is `A + B log x` of smooth `A` and `B`, the latter of order `x^2`: the root makes the logarithm
+    /// harmless, and `near` is the scale of narrow lobes.
+    pub struct AlbedoFit {
+        /// Scale of the warp.
+        pub(in crate::hair) near: [C; 2],
+        /// Coefficients, from the constant up, of each channel in each piece.
+        pub(in crate::hair) coefficients: [[[C; 2 * PIECES]; 3]; POWERS],
+        /// 1 where the polynomials are not accurate enough and all 0, else 0.
+        pub(in crate::hair) refused: C,
+    }
+}
+
+/// The view terms with each channel of the lobes divided by its albedo where that is above 1, from the fit.
+#[inline(always)]
+pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
+    fit: &AlbedoFit<C>,
+    view: &HairView<L::Stored>,
+) -> HairView<L::Stored> {
+    let c = L::splat;
+    let one = c(1.0);
+    let (sin, cos) = (view.half_sin_theta_o.lanes(), view.half_cos_theta_o.lanes());
+    let upper = c(0.0).lt(sin);
+    let near = L::select(upper, fit.near[1].lanes(), fit.near[0].lanes());
+    // `x` is `root / below`. The second operand of `min` wins over NaN.
+    let below = sin.abs() + 0.5;
+    let root = (cos * below).sqrt();
+    let v = L::quotient(root * (near + 1.0), near.mul_add(below, root)).min(one);
+    let piece = L::Index::search(v, [c(0.25), c(0.5), c(0.75)], PIECES - 1);
+    let t = v.mul_add(c(8.0), piece.to_number().mul_add(c(-2.0), c(-1.0)));
+    let mut albedo = [one; 3];
+    let mut channel = 0;
+    while channel < 3 {
+        let mut power = POWERS - 1;
+        let mut sum = C::look_up_eight(&fit.coefficients[power][channel], piece, upper);
+        while power > 0 {
+            power -= 1;
+            let next = C::look_up_eight(&fit.coefficients[power][channel], piece, upper);
+            sum = sum.mul_add(t, next);
+        }
+        albedo[channel] = sum.max(one);
+        channel += 1;
+    }
+    // One division for the three. Fits are of albedos below `LARGEST`, whose cube is a float.
+    let [r, g, b] = albedo;
+    let rg = r * g;
+    let reciprocal = L::quotient(one, rg * b);
+    let of_b = reciprocal * b;
+    scaled::<L>(view, [of_b * g, of_b * r, reciprocal * rg])
+}
+
+/// The view terms with each channel of the lobes divided by its albedo where that is above 1, to within 2e-4; in the lanes of
+/// the mask.
+#[inline(always)]
+pub(super) fn integrated<B: Bell, L: Lanes>(
+    view: &HairView<L::Stored>,
+    lanes: L::Mask,
+) -> HairView<L::Stored> {
+    let (one, most) = (L::splat(1.0), L::splat(f32::MAX));
+    let mut by = channels::<B, L>(view);
+    let mut channel = 0;
+    while channel < 3 {
+        // The second operand wins over NaN: the albedo towards a wo that is no direction.
+        let albedo = L::keep(lanes, by[channel].min(most)).max(one);
+        by[channel] = L::quotient(one, albedo);
+        channel += 1;
+    }
+    scaled::<L>(view, by)
+}
+
+/// The view terms with a factor on each channel.
+#[inline(always)]
+fn scaled<L: Lanes>(view: &HairView<L::Stored>, by: [L; 3]) -> HairView<L::Stored> {
+    let hair = &view.lobes;
+    let mut colors = [
+        lanes3(&hair.color_r),
+        lanes3(&hair.color_tt),
+        lanes3(&hair.color_trt),
+    ];
+    let mut channel = 0;
+    while channel < 3 {
+        colors[0][channel] = colors[0][channel] * by[channel];
+        colors[1][channel] = colors[1][channel] * by[channel];
+        colors[2][channel] = colors[2][channel] * by[channel];
+        channel += 1;
+    }
+    let [r, tt, trt] = colors;
+    let lobes = HairLobes {
+        color_r: store3(r),
+        color_tt: store3(tt),
+        color_trt: store3(trt),
+        ..*hair
+    };
+    HairView { lobes, ..*view }
+}

@@ -1,0 +1,236 @@
+//! Fit of a material's albedo: made once per material, in eight lanes that never fuse, so that it has the same bits everywhere.
+
+use super::{AlbedoFit, HairLobes, PIECES, POWERS};
+use crate::hair::albedo::channels;
+use crate::hair::prepare_view;
+use crate::model::Bell;
+use crate::simd::portable::Unfused;
+use crate::simd::{Broadcast, Lanes, Vec3x};
+use core::f32::consts::{FRAC_PI_2, PI};
+use wide::f32x8;
+
+/// Inclinations per piece, one per lane.
+const NODES: usize = 8;
+
+/// Warps to try, by `near`: the first is that of everyday hair.
+const NEAR: [f32; 6] = [0.5, 0.38, 0.8, 0.25, 1.5, 100.0];
+
+/// Largest error of a fit in use, relative to the albedo where that is above 1.
+const ACCEPTED: f32 = 7e-4;
+
+/// Width of a lobe, rad, below which it is looked at for itself, and where: in widths from its end.
+const NARROW: f32 = 0.05;
+const WIDTHS: [f32; 8] = [-16.0, -4.0, -1.6, -0.5, 0.5, 1.6, 4.0, 16.0];
+
+/// Albedos above it are not fitted.
+const LARGEST: f32 = 1e9;
+
+/// `cos(k pi / 16)`.
+const COS: [f32; 9] = [
+    1.0,
+    0.980_785_25,
+    0.923_879_5,
+    0.831_469_6,
+    0.707_106_77,
+    0.555_570_24,
+    0.382_683_43,
+    0.195_090_32,
+    0.0,
+];
+
+/// `cos(k pi / 16)` of any `k`.
+const fn cosine(k: usize) -> f32 {
+    let k = k % 32;
+    let k = if k > 16 { 32 - k } else { k };
+    if k > 8 { -COS[16 - k] } else { COS[k] }
+}
+
+/// The nodes of a piece in `[-1, 1]`, descending: roots of the Chebyshev polynomial of degree 8.
+const ROOTS: [f32; NODES] = {
+    let mut roots = [0.0; NODES];
+    let mut i = 0;
+    while i < NODES {
+        roots[i] = cosine(2 * i + 1);
+        i += 1;
+    }
+    roots
+};
+
+/// Chebyshev coefficients of the polynomial through the values at the roots.
+fn chebyshev(values: &[f32; NODES]) -> [f32; NODES] {
+    let mut coefficients = [0.0; NODES];
+    for (degree, coefficient) in coefficients.iter_mut().enumerate() {
+        let mut sum = 0.0;
+        for (i, value) in values.iter().enumerate() {
+            sum += value * cosine(degree * (2 * i + 1));
+        }
+        *coefficient = sum * if degree == 0 { 0.125 } else { 0.25 };
+    }
+    coefficients
+}
+
+/// Least and largest value of a polynomial on `[-1, 1]`, at 17 points.
+fn range(coefficients: &[f32; POWERS]) -> [f32; 2] {
+    let [mut least, mut most] = [f32::MAX, 0.0];
+    for k in 0..=16 {
+        let t = cosine(k);
+        let value = coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c);
+        least = value.min(least);
+        // NaN stays.
+        most = if value < most { most } else { value };
+    }
+    [least, most]
+}
+
+/// The polynomials of one side of the normal plane, in one warp.
+struct Side {
+    near: f32,
+    coefficients: [[[f32; PIECES]; 3]; POWERS],
+}
+
+/// Albedos of the channels at eight inclinations, given by `x`.
+#[inline(never)]
+fn albedos<B: Bell>(lobes: &HairLobes<f32>, sign: f32, x: f32x8) -> [f32x8; 3] {
+    let x: Unfused = x.lanes();
+    let (one, q) = (Unfused::splat(1.0), x * x);
+    let inv = Unfused::quotient(one, q * q + 1.0);
+    let wo = Vec3x::new(
+        (one - q * q) * inv * sign,
+        (q + q) * inv,
+        Unfused::splat(0.0),
+    );
+    let view = prepare_view::<Unfused, f32>(lobes, wo);
+    let [r, g, b] = channels::<B, Unfused>(&view);
+    [r.store(), g.store(), b.store()]
+}
+
+impl Side {
+    /// The polynomials, if they are accurate enough.
+    fn of<B: Bell>(lobes: &HairLobes<f32>, sign: f32, near: f32) -> Option<Self> {
+        let mut side = Self {
+            near,
+            coefficients: [[[0.0; PIECES]; 3]; POWERS],
+        };
+        let mut middle = 1.0;
+        for piece in 0..PIECES {
+            let v = (f32x8::new(ROOTS) + middle) * 0.125;
+            let albedo = albedos::<B>(lobes, sign, v * near / (1.0 + near - v));
+            for (channel, albedo) in albedo.iter().enumerate() {
+                let c = chebyshev(albedo.as_array());
+                let monomials = [
+                    c[0] - c[2] + c[4],
+                    c[1] - 3.0 * c[3],
+                    2.0 * c[2] - 8.0 * c[4],
+                    4.0 * c[3],
+                    8.0 * c[4],
+                ];
+                for (table, coefficient) in side.coefficients.iter_mut().zip(monomials) {
+                    table[channel][piece] = coefficient;
+                }
+                if relative_error(&c, range(&monomials)) > ACCEPTED {
+                    return None;
+                }
+            }
+            middle += 2.0;
+        }
+        let mut lobe_ends = lobes.alpha.into_iter().zip(lobes.beta);
+        lobe_ends
+            .all(|(alpha, beta)| {
+                side.error_at_end::<B>(lobes, sign, sign * alpha, beta) <= ACCEPTED
+            })
+            .then_some(side)
+    }
+
+    /// Largest error where the range of a narrow lobe's inclinations ends at its centre: the albedo changes within two widths there,
+    /// which may lie between nodes.
+    fn error_at_end<B: Bell>(
+        &self,
+        lobes: &HairLobes<f32>,
+        sign: f32,
+        tilt: f32,
+        beta: f32,
+    ) -> f32 {
+        // Twice the angle in `theta_h`, and the width.
+        let end = if tilt < 0.0 {
+            -2.0 * tilt
+        } else {
+            PI - 2.0 * tilt
+        };
+        if beta > NARROW || end - 8.0 * beta > FRAC_PI_2 {
+            return 0.0;
+        }
+        let x = WIDTHS.map(|widths| {
+            let from_pole = (end + 2.0 * beta * widths).clamp(1e-6, FRAC_PI_2);
+            libm::sqrtf(libm::tanf(0.5 * from_pole))
+        });
+        let albedo = albedos::<B>(lobes, sign, f32x8::new(x));
+        let mut largest = 0.0_f32;
+        for (channel, albedo) in albedo.iter().enumerate() {
+            for (x, albedo) in x.into_iter().zip(albedo.as_array()) {
+                let fit = self.at(channel, x).max(1.0);
+                largest = largest.max((f32::quotient(fit, albedo.max(1.0)) - 1.0).abs());
+            }
+        }
+        largest
+    }
+
+    /// The albedo of a channel by the fit.
+    fn at(&self, channel: usize, x: f32) -> f32 {
+        let v = f32::quotient((1.0 + self.near) * x, x + self.near);
+        let (mut piece, mut t) = (0, 8.0 * v - 1.0);
+        while t > 1.0 && piece < PIECES - 1 {
+            (piece, t) = (piece + 1, t - 2.0);
+        }
+        self.coefficients
+            .iter()
+            .rev()
+            .fold(0.0, |sum, table| sum * t + table[channel][piece])
+    }
+
+    /// The first warp that is accurate enough, if one is.
+    fn accurate<B: Bell>(lobes: &HairLobes<f32>, sign: f32) -> Option<Self> {
+        NEAR.iter()
+            .find_map(|near| Self::of::<B>(lobes, sign, *near))
+    }
+}
+
+/// Bound on the error of a piece, relative to the albedo where that is above 1; infinite for albedos that are not fitted.
+///
+/// Coefficients that are left out bound the error of the polynomial through the nodes; half of the last two once more stands
+/// for those beyond.
+fn relative_error(c: &[f32; NODES], [least, most]: [f32; 2]) -> f32 {
+    let error = c[5].abs() + 1.5 * (c[6].abs() + c[7].abs());
+    if most + error < 1.0 {
+        0.0
+    } else if most < LARGEST {
+        f32::quotient(error, (least - error).max(1.0))
+    } else {
+        f32::INFINITY
+    }
+}
+
+impl AlbedoFit<f32> {
+    /// The fit of a material's lobes.
+    pub(in crate::hair) fn of<B: Bell>(lobes: &HairLobes<f32>) -> Self {
+        let mut fit = Self {
+            near: [1.0; 2],
+            coefficients: [[[0.0; 2 * PIECES]; 3]; POWERS],
+            refused: 1.0,
+        };
+        if let Some(low) = Side::accurate::<B>(lobes, -1.0)
+            && let Some(high) = Side::accurate::<B>(lobes, 1.0)
+        {
+            fit.near = [low.near, high.near];
+            for (power, table) in fit.coefficients.iter_mut().enumerate() {
+                for (channel, pieces) in table.iter_mut().enumerate() {
+                    let (halves, _) = pieces.as_chunks_mut::<PIECES>();
+                    for (half, side) in halves.iter_mut().zip([&low, &high]) {
+                        *half = side.coefficients[power][channel];
+                    }
+                }
+            }
+            fit.refused = 0.0;
+        }
+        fit
+    }
+}

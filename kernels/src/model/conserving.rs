@@ -1,0 +1,212 @@
+//! Energy conservation: a model that returns no more light than arrives.
+
+use crate::model::{Eval, Hit, LobeEval, Model, SampleLanes};
+use crate::simd::{Broadcast, Kernel, LaneStruct, Lanes, Path, Scalar, Vec3x};
+use crate::{Bsdf, Bsdf8, LobeMask, Material, PerLobe};
+use wide::f32x8;
+
+impl<M: Model> Bsdf<M> {
+    /// The BSDF with each channel divided by its albedo where that is above 1: see [`Conserving`].
+    ///
+    /// For parameters that vary per hit: it integrates the lobes, where [`Conserving`] reads a fit of the material. With some
+    /// lobes alone, give the lobes first: `with_lobes` of a BSDF that conserves energy keeps its factors.
+    #[inline]
+    #[must_use]
+    pub fn conserving(&self) -> Self {
+        Self {
+            prepared: M::conserving::<f32>(&self.prepared, true),
+            level: self.level,
+        }
+    }
+}
+
+impl<M: Model> Bsdf8<M> {
+    /// The BSDFs with each channel divided by its albedo where that is above 1: see [`Bsdf::conserving`].
+    #[inline]
+    #[must_use]
+    pub fn conserving(&self) -> Self {
+        self.conserving_where(f32x8::ONE)
+    }
+
+    /// The same in the lanes whose number is above 0.
+    #[inline]
+    pub(crate) fn conserving_where(&self, lanes: f32x8) -> Self {
+        let level = self.level;
+        let kernel = Integrate::<M> {
+            prepared: &self.prepared,
+            lanes,
+        };
+        level.run_into(kernel, |prepared| Self { prepared, level })
+    }
+}
+
+/// [`Model::conserving`] of eight shading points.
+struct Integrate<'a, M: Model> {
+    prepared: &'a M::Prepared<f32x8>,
+    lanes: f32x8,
+}
+
+impl<M: Model> Kernel for Integrate<'_, M> {
+    type Output = M::Prepared<f32x8>;
+    const MANY_REGISTERS: bool = false;
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> M::Prepared<f32x8> {
+        M::conserving::<L>(self.prepared, L::splat(0.0).lt(self.lanes.lanes()))
+    }
+}
+
+impl<M: Model> Material<Conserving<M>> {
+    /// Whether each hit integrates the lobes, as the fit of this material is not accurate enough: calls take many times as long,
+    /// with results as good.
+    ///
+    /// Lobes narrower than a degree, or intensities far above 1, may need it; everyday hair does not.
+    #[inline]
+    #[must_use]
+    pub fn integrates(&self) -> bool {
+        M::unfit::<f32, f32>(&self.constants.fit) > 0.0
+    }
+}
+
+/// A model with each channel of every shading point scaled so that its albedo is at most 1, as part of `prepare` and nothing
+/// later. Slices of hits, eight lanes and samplers are those of the model.
+///
+/// The factor depends on `wo` alone, `min(1, 1 / albedo(wo))`. The model is not reciprocal where it is below 1:
+/// `S(wo, wi) / S(wi, wo)` is the ratio of two factors. Light hair keeps its brightness, while
+/// [`Material::conserving_scale`], one factor from the worst direction, darkens it but keeps the model reciprocal. Models that
+/// [conserve energy](Model::CONSERVES) by their parameters stay as they are.
+///
+/// - Accuracy: the albedo is at most 1.001.
+/// - Cost: a material keeps its albedo as a fit, which takes as long to make as some hundred hits; each hit reads it. A material
+///   whose fit is not accurate enough [`integrates`](Material::integrates) its lobes at every hit instead.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairis::{Conserving, Gaussian, HairParams, Material, PerLobe, Published};
+/// let grazing = Vec3::new(0.99, 0.14, 0.0).normalize();
+/// let red = |PerLobe(lobes): PerLobe<[f32; 3]>| lobes.iter().map(|lobe| lobe[0]).sum::<f32>();
+/// let params = HairParams::bright();
+/// assert!(red(Material::new(&Published(Gaussian), &params).prepare(grazing).albedo()) > 1.5);
+/// let hair = Material::new(&Conserving(Published(Gaussian)), &params);
+/// assert!((red(hair.prepare(grazing).albedo()) - 1.0).abs() < 1e-3);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Conserving<M>(pub M);
+
+/// The constants of a material, and those of its energy conservation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConservingMaterial<I, F> {
+    inner: I,
+    fit: F,
+}
+
+impl<I: LaneStruct, F: LaneStruct<Number = I::Number>> LaneStruct for ConservingMaterial<I, F> {
+    type Number = I::Number;
+    type One = ConservingMaterial<I::One, F::One>;
+    type Eight = ConservingMaterial<I::Eight, F::Eight>;
+
+    #[inline]
+    fn make(path: &Path<'_>, next: &mut dyn FnMut(&Path<'_>) -> I::Number) -> Self {
+        Self {
+            inner: I::make(&Path::Field(path, "inner"), next),
+            fit: F::make(&Path::Field(path, "fit"), next),
+        }
+    }
+    #[inline]
+    fn visit(&self, path: &Path<'_>, see: &mut dyn FnMut(&Path<'_>, I::Number)) {
+        self.inner.visit(&Path::Field(path, "inner"), see);
+        self.fit.visit(&Path::Field(path, "fit"), see);
+    }
+    #[inline]
+    fn pack(items: [&Self::One; 8]) -> Self::Eight {
+        ConservingMaterial {
+            inner: I::pack(items.map(|item| &item.inner)),
+            fit: F::pack(items.map(|item| &item.fit)),
+        }
+    }
+    #[inline]
+    fn lane(eight: &Self::Eight, lane: usize) -> Self::One {
+        ConservingMaterial {
+            inner: I::lane(&eight.inner, lane),
+            fit: F::lane(&eight.fit, lane),
+        }
+    }
+}
+
+impl<M: Model> Model for Conserving<M> {
+    type Params = M::Params;
+    type Material<C: Scalar> = ConservingMaterial<M::Material<C>, M::Fit<C>>;
+    type Prepared<C: Scalar> = M::Prepared<C>;
+    type Fit<C: Scalar> = [C; 0];
+
+    const LOBES: &'static [&'static str] = M::LOBES;
+    const CONSERVES: bool = true;
+
+    #[inline]
+    fn material(&self, params: &M::Params) -> Self::Material<f32> {
+        const {
+            assert!(
+                M::CONSERVES || size_of::<M::Fit<f32>>() > 0,
+                "the model has no `conserving`: give it one, or say that it conserves energy by its parameters, `CONSERVES`"
+            );
+        }
+        let inner = self.0.material(params);
+        let fit = M::fit(&inner);
+        ConservingMaterial { inner, fit }
+    }
+
+    #[inline(always)]
+    fn prepare<L: Lanes, C: Broadcast<L>>(
+        material: &Self::Material<C>,
+        hit: Hit<L>,
+    ) -> M::Prepared<L::Stored> {
+        M::fitted::<L, C>(&material.fit, &M::prepare::<L, C>(&material.inner, hit))
+    }
+
+    #[inline(always)]
+    fn prepare_one(material: &Self::Material<f32>, hit: Hit<f32>) -> M::Prepared<f32> {
+        M::fitted::<f32, f32>(&material.fit, &M::prepare_one(&material.inner, hit))
+    }
+
+    #[inline(always)]
+    fn integrates<L: Lanes, C: Broadcast<L>>(material: &Self::Material<C>) -> L {
+        M::unfit::<L, C>(&material.fit)
+    }
+
+    // For the shading points of materials without a fit; those with one keep their energy by `prepare`.
+    #[inline(always)]
+    fn conserving<L: Lanes>(
+        prepared: &M::Prepared<L::Stored>,
+        lanes: L::Mask,
+    ) -> M::Prepared<L::Stored> {
+        M::conserving::<L>(prepared, lanes)
+    }
+
+    #[inline(always)]
+    fn restrict<C: Lanes>(prepared: &M::Prepared<C>, lobes: LobeMask) -> M::Prepared<C> {
+        M::restrict(prepared, lobes)
+    }
+
+    #[inline(always)]
+    fn eval<L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>, wi: Vec3x<L>) -> Eval<L> {
+        M::eval(prepared, wi)
+    }
+
+    #[inline(always)]
+    fn lobes<L: Lanes, C: Broadcast<L>>(
+        prepared: &M::Prepared<C>,
+        wi: Vec3x<L>,
+    ) -> PerLobe<LobeEval<L>> {
+        M::lobes(prepared, wi)
+    }
+
+    #[inline(always)]
+    fn sample<L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>, xi: [L; 3]) -> SampleLanes<L> {
+        M::sample(prepared, xi)
+    }
+
+    #[inline(always)]
+    fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>) -> PerLobe<[L; 3]> {
+        M::albedo(prepared)
+    }
+}

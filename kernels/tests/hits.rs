@@ -1,0 +1,173 @@
+//! Calls that prepare and use a hit at once have the bits of the calls one after the other.
+
+use crate::conserving::{columns, slices};
+use glam::Vec3;
+use hairis::columns::{
+    EvalColumns, HitColumns, HitsError, LengthError, MaterialTable, SampleColumns,
+};
+use hairis::model::Model;
+use hairis::simd::Level;
+use hairis::{Conserving, Gaussian, HairParams, Hit, Matched, Material, Published};
+use hairis_variants::{Chiang, ChiangParams, KajiyaKay, KajiyaKayParams};
+
+const LEN: usize = 45;
+
+fn one_hit_is_two_calls<M: Model>(material: &Material<M>) {
+    let [wo, wi, xi] = columns(LEN);
+    for i in 0..LEN {
+        let at = |columns: &[Vec<f32>; 3]| [columns[0][i], columns[1][i], columns[2][i]];
+        let hit = Hit::new(Vec3::from(at(&wo)), 2.0 * xi[2][i] - 1.0);
+        let (wi, bsdf) = (Vec3::from(at(&wi)), material.prepare(hit));
+        assert_eq!(material.eval_hit(hit, wi), bsdf.eval_pdf(wi), "hit {i}");
+        assert_eq!(
+            material.sample_hit(hit, at(&xi)),
+            bsdf.sample(at(&xi)),
+            "hit {i}"
+        );
+    }
+}
+
+#[test]
+fn one_hit_has_the_bits_of_a_prepared_one() {
+    let hair = HairParams::blond();
+    one_hit_is_two_calls(&Material::new(&Published(Gaussian), &hair));
+    one_hit_is_two_calls(&Material::new(&Matched::new(Gaussian), &hair));
+    one_hit_is_two_calls(&Material::new(&Conserving(Published(Gaussian)), &hair));
+    one_hit_is_two_calls(&Material::new(&KajiyaKay, &KajiyaKayParams::default()));
+    one_hit_is_two_calls(&Material::new(&Chiang::MEAN, &ChiangParams::default()));
+}
+
+/// Fifteen columns of results.
+type Numbers = [Vec<f32>; 15];
+
+fn evals(out: &mut Numbers) -> (EvalColumns<'_>, SampleColumns<'_>) {
+    let [r, g, b, p, u, v, w, sr, sg, sb, sp, wr, wg, wb, slot] =
+        out.each_mut().map(Vec::as_mut_slice);
+    let evals = EvalColumns {
+        value: Some([r, g, b]),
+        pdf: Some(p),
+    };
+    let samples = SampleColumns {
+        wi: Some([u, v, w]),
+        value: Some([sr, sg, sb]),
+        pdf: Some(sp),
+        weight: Some([wr, wg, wb]),
+        slot: Some(slot),
+    };
+    (evals, samples)
+}
+
+fn bits(numbers: &Numbers) -> Vec<u32> {
+    numbers.iter().flatten().map(|x| x.to_bits()).collect()
+}
+
+fn both_are_two_calls<M: Model>(materials: &[Material<M>; 2]) {
+    let [wo, wi, xi] = columns(LEN);
+    let index: Vec<u32> = (0..LEN).map(|i| u32::from(i < 9 || i % 3 == 0)).collect();
+    for level in Level::available() {
+        for len in [0, 1, 7, 8, 9, 16, 31, LEN] {
+            let short =
+                |columns: &[Vec<f32>; 3]| columns.each_ref().map(|column| column[..len].to_vec());
+            let (wo, wi, xi) = (short(&wo), short(&wi), short(&xi));
+            let hits = HitColumns {
+                wo: slices(&wo),
+                h: Some(&wi[0]),
+            };
+            let new = || -> Numbers { core::array::from_fn(|_| vec![f32::NAN; len]) };
+            let materials = materials.map(|material| material.with_level(level));
+            let table = MaterialTable {
+                materials: &materials,
+                index: &index[..len],
+            };
+            let (mut two, mut both) = (new(), new());
+            let (e, s) = evals(&mut two);
+            materials[0].eval_hits(hits, slices(&wi), e).unwrap();
+            materials[0].sample_hits(hits, slices(&xi), s).unwrap();
+            let (e, s) = evals(&mut both);
+            materials[0]
+                .eval_sample_hits(hits, slices(&wi), e, slices(&xi), s)
+                .unwrap();
+            assert_eq!(
+                bits(&both),
+                bits(&two),
+                "{level}, {len} hits of one material"
+            );
+
+            let (mut two, mut both) = (new(), new());
+            let (e, s) = evals(&mut two);
+            table.eval_hits(hits, slices(&wi), e).unwrap();
+            table.sample_hits(hits, slices(&xi), s).unwrap();
+            let (e, s) = evals(&mut both);
+            table
+                .eval_sample_hits(hits, slices(&wi), e, slices(&xi), s)
+                .unwrap();
+            assert_eq!(
+                bits(&both),
+                bits(&two),
+                "{level}, {len} hits of two materials"
+            );
+
+            // Columns that are left out.
+            let mut pdf = vec![0.0; len];
+            let out = SampleColumns {
+                pdf: Some(&mut pdf),
+                ..SampleColumns::default()
+            };
+            let nothing = EvalColumns::default();
+            table
+                .eval_sample_hits(hits, slices(&wi), nothing, slices(&xi), out)
+                .unwrap();
+            assert_eq!(pdf, two[10], "{level}, {len} densities alone");
+        }
+    }
+}
+
+#[test]
+fn evaluating_and_sampling_at_once_has_the_bits_of_both_calls() {
+    let pair = [HairParams::blond(), HairParams::black()];
+    both_are_two_calls(&pair.map(|hair| Material::new(&Published(Gaussian), &hair)));
+    both_are_two_calls(&pair.map(|hair| Material::new(&Matched::new(Gaussian), &hair)));
+    both_are_two_calls(&pair.map(|hair| Material::new(&Conserving(Published(Gaussian)), &hair)));
+    both_are_two_calls(&[1, 2].map(|_| Material::new(&Chiang::MEAN, &ChiangParams::default())));
+}
+
+#[test]
+fn columns_that_differ_in_length_are_named() {
+    let [wo, wi, xi] = columns(LEN);
+    let hair = Material::new(&Published(Gaussian), &HairParams::blond());
+    let hits = HitColumns {
+        wo: slices(&wo),
+        h: None,
+    };
+    let mut short = [0.0; 3];
+    let samples = SampleColumns {
+        pdf: Some(&mut short),
+        ..SampleColumns::default()
+    };
+    let nothing = EvalColumns::default();
+    let error = hair.eval_sample_hits(hits, slices(&wi), nothing, slices(&xi), samples);
+    let want = LengthError {
+        field: "sample.pdf",
+        len: 3,
+        expected: LEN,
+    };
+    assert_eq!(error, Err(want));
+    let [_, xi_short] = [0, 1].map(|_| xi.each_ref().map(|column| column[..LEN - 1].to_vec()));
+    let table = MaterialTable {
+        materials: &[hair],
+        index: &[0; LEN],
+    };
+    let error = table.eval_sample_hits(
+        hits,
+        slices(&wi),
+        EvalColumns::default(),
+        slices(&xi_short),
+        SampleColumns::default(),
+    );
+    let want = LengthError {
+        field: "xi.lobe",
+        len: LEN - 1,
+        expected: LEN,
+    };
+    assert_eq!(error, Err(HitsError::Length(want)));
+}
