@@ -1,0 +1,328 @@
+//! Time of hits with `Conserving` over those without, of one hit in one call over two calls, of evaluating and sampling at once over
+//! doing both, and of making a material.
+//!
+//! `cargo bench -p hairis-benches --bench hits` prints a record. Both of a pair are called in turns, stretch by stretch; a ratio is
+//! the median of those of all turns.
+
+use core::array::from_fn;
+use core::hint::black_box;
+use glam::Vec3;
+use hairis::columns::{EvalColumns, HitColumns, MaterialTable, SampleColumns};
+use hairis::model::Model;
+use hairis::simd::Level;
+use hairis::{Conserving, Gaussian, HairParams, Matched, Material, Material8, Published};
+use hairis_benches::cpu;
+use hairis_benches::inputs::{Column, DIRECTIONS, Inputs, arrays, packets};
+use hairis_variants::Cauchy;
+use std::env;
+use std::time::Instant;
+
+/// Turns of a pair.
+const TURNS: usize = 301;
+
+fn main() {
+    // Cargo runs benches as tests, too.
+    let turns = if env::args().any(|word| word == "--bench") {
+        TURNS
+    } else {
+        1
+    };
+    println!("# CPU: {}", cpu::name());
+    println!("# compiled for {}", Level::portable());
+    println!("model,call,level,ns,base_ns,ratio");
+    let inputs = Inputs::draw();
+    let run = |model| Run {
+        model,
+        turns,
+        inputs: &inputs,
+    };
+    run("gaussian").all(Published(Gaussian));
+    run("cauchy").all(Cauchy::PAPER.model());
+    run("gaussian-matched").all(Matched::new(Gaussian));
+    run("cauchy-matched").all(Cauchy::PAPER.matched());
+}
+
+/// Keeps a result that nothing reads.
+#[inline(always)]
+fn keep<T>(result: T) {
+    black_box(result);
+}
+
+/// Time of a call, ns.
+fn stretch(call: &mut impl FnMut()) -> f64 {
+    let start = Instant::now();
+    call();
+    start.elapsed().as_secs_f64() * 1e9
+}
+
+fn median(times: &mut [f64]) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+/// Columns of a call and its results.
+struct Columns {
+    wo: [Column; 3],
+    wi: [Column; 3],
+    xi: [Column; 3],
+    out: [Column; 11],
+}
+
+impl Columns {
+    fn new(inputs: &Inputs) -> Self {
+        let columns = |first: usize, rows: &[[f32; 3]]| {
+            from_fn(|k| Column::new(first + k, rows.iter().map(|row| row[k])))
+        };
+        Self {
+            wo: columns(0, &arrays(&inputs.wo)),
+            wi: columns(3, &arrays(&inputs.wi)),
+            xi: columns(6, &inputs.xi),
+            out: from_fn(|k| Column::new(9 + k, [])),
+        }
+    }
+
+    /// Hits, directions, uniform numbers, and what is written: all of an evaluation, and of a sample what a path tracer needs.
+    #[expect(clippy::type_complexity, reason = "the arguments of one call")]
+    fn parts(
+        &mut self,
+    ) -> (
+        HitColumns<'_>,
+        [&[f32]; 3],
+        [&[f32]; 3],
+        EvalColumns<'_>,
+        SampleColumns<'_>,
+    ) {
+        let [r, g, b, p, u, v, w, q, wr, wg, wb] =
+            self.out.each_mut().map(|c| c.part_mut(0, DIRECTIONS));
+        let [wo, wi, xi] =
+            [&self.wo, &self.wi, &self.xi].map(|c| c.each_ref().map(|c| c.part(0, DIRECTIONS)));
+        let evals = EvalColumns {
+            value: Some([r, g, b]),
+            pdf: Some(p),
+        };
+        let samples = SampleColumns {
+            wi: Some([u, v, w]),
+            pdf: Some(q),
+            weight: Some([wr, wg, wb]),
+            ..SampleColumns::default()
+        };
+        (HitColumns { wo, h: None }, wi, xi, evals, samples)
+    }
+}
+
+/// The pairs of one model.
+#[derive(Clone, Copy)]
+struct Run<'a> {
+    model: &'a str,
+    turns: usize,
+    inputs: &'a Inputs,
+}
+
+impl Run<'_> {
+    /// Times two calls in turns and prints a row, per each of so many hits.
+    fn pair(
+        self,
+        call: &str,
+        level: &str,
+        hits: usize,
+        mut ours: impl FnMut(),
+        mut base: impl FnMut(),
+    ) {
+        let [mut a, mut b, mut ratio] = [vec![], vec![], vec![]];
+        for turn in 0..=self.turns {
+            let (first, second);
+            // Whichever is first changes from turn to turn.
+            if turn % 2 == 0 {
+                (first, second) = (stretch(&mut ours), stretch(&mut base));
+            } else {
+                let base = stretch(&mut base);
+                (first, second) = (stretch(&mut ours), base);
+            }
+            // The first turn warms up.
+            if turn > 0 {
+                a.push(first);
+                b.push(second);
+                ratio.push(first / second);
+            }
+        }
+        #[expect(clippy::cast_precision_loss, reason = "some thousand")]
+        let per = |ns: f64| ns / hits as f64;
+        println!(
+            "{},{call},{level},{:.2},{:.2},{:.3}",
+            self.model,
+            per(median(&mut a)),
+            per(median(&mut b)),
+            median(&mut ratio)
+        );
+    }
+
+    fn all<M: Model<Params = HairParams>>(self, model: M) {
+        let hair = HairParams::blond();
+        let raw = Material::new(&model, &hair);
+        let fit = Material::new(&Conserving(model), &hair);
+        self.pair(
+            "new",
+            "-",
+            1,
+            || {
+                black_box(Material::new(&Conserving(model), black_box(&hair)));
+            },
+            || {
+                black_box(Material::new(&model, black_box(&hair)));
+            },
+        );
+        self.one(&raw, &fit);
+        for level in Level::available() {
+            self.slices(level, &raw.with_level(level), &fit.with_level(level));
+            self.packets(level, &raw.with_level(level), &fit.with_level(level));
+            self.mixed::<M>(level, model);
+        }
+    }
+
+    /// Calls of one hit.
+    fn one<M: Model>(self, raw: &Material<M>, fit: &Material<Conserving<M>>) {
+        let inputs = self.inputs;
+        let evals = |call: &dyn Fn(Vec3, Vec3)| {
+            for (wo, wi) in inputs.wo.iter().zip(&inputs.wi) {
+                call(*wo, *wi);
+            }
+        };
+        let samples = |call: &dyn Fn(Vec3, [f32; 3])| {
+            for (wo, xi) in inputs.wo.iter().zip(&inputs.xi) {
+                call(*wo, *xi);
+            }
+        };
+        let row = |call, ours: &mut dyn FnMut(), base: &mut dyn FnMut()| {
+            self.pair(call, "one lane", DIRECTIONS, ours, base);
+        };
+        row(
+            "eval_hit, Conserving over raw",
+            &mut || evals(&|wo, wi| keep(fit.eval_hit(wo, wi))),
+            &mut || evals(&|wo, wi| keep(raw.eval_hit(wo, wi))),
+        );
+        row(
+            "sample_hit, Conserving over raw",
+            &mut || samples(&|wo, xi| keep(fit.sample_hit(wo, xi))),
+            &mut || samples(&|wo, xi| keep(raw.sample_hit(wo, xi))),
+        );
+        row(
+            "prepare, Conserving over raw",
+            &mut || evals(&|wo, _| keep(fit.prepare(wo))),
+            &mut || evals(&|wo, _| keep(raw.prepare(wo))),
+        );
+        row(
+            "eval_hit over prepare and eval_pdf",
+            &mut || evals(&|wo, wi| keep(raw.eval_hit(wo, wi))),
+            &mut || evals(&|wo, wi| keep(black_box(raw.prepare(wo)).eval_pdf(wi))),
+        );
+        row(
+            "sample_hit over prepare and sample",
+            &mut || samples(&|wo, xi| keep(raw.sample_hit(wo, xi))),
+            &mut || samples(&|wo, xi| keep(black_box(raw.prepare(wo)).sample(xi))),
+        );
+    }
+
+    /// Slices of hits on one material.
+    fn slices<M: Model>(self, level: Level, raw: &Material<M>, fit: &Material<Conserving<M>>) {
+        let [mut ours, mut base] = [(); 2].map(|()| Columns::new(self.inputs));
+        let row = |call, ours: &mut dyn FnMut(), base: &mut dyn FnMut()| {
+            self.pair(call, level.name(), DIRECTIONS, ours, base);
+        };
+        row(
+            "eval_hits, Conserving over raw",
+            &mut || {
+                let (hits, wi, _, out, _) = ours.parts();
+                black_box(fit.eval_hits(hits, wi, out).is_ok());
+            },
+            &mut || {
+                let (hits, wi, _, out, _) = base.parts();
+                black_box(raw.eval_hits(hits, wi, out).is_ok());
+            },
+        );
+        row(
+            "sample_hits, Conserving over raw",
+            &mut || {
+                let (hits, _, xi, _, out) = ours.parts();
+                black_box(fit.sample_hits(hits, xi, out).is_ok());
+            },
+            &mut || {
+                let (hits, _, xi, _, out) = base.parts();
+                black_box(raw.sample_hits(hits, xi, out).is_ok());
+            },
+        );
+        row(
+            "eval_sample_hits over both calls",
+            &mut || {
+                let (hits, wi, xi, evals, samples) = ours.parts();
+                black_box(raw.eval_sample_hits(hits, wi, evals, xi, samples).is_ok());
+            },
+            &mut || {
+                let (hits, wi, xi, evals, samples) = base.parts();
+                black_box(raw.eval_hits(hits, wi, evals).is_ok());
+                black_box(raw.sample_hits(hits, xi, samples).is_ok());
+            },
+        );
+    }
+
+    /// Packets of hits on one material and on eight.
+    fn packets<M: Model>(self, level: Level, raw: &Material<M>, fit: &Material<Conserving<M>>) {
+        let wo = packets(&self.inputs.wo);
+        let (raw8, fit8) = (Material8::pack([raw; 8]), Material8::pack([fit; 8]));
+        let row = |call, ours: &mut dyn FnMut(), base: &mut dyn FnMut()| {
+            self.pair(call, level.name(), DIRECTIONS, ours, base);
+        };
+        row(
+            "prepare8 of one material, Conserving over raw",
+            &mut || wo.iter().for_each(|wo| keep(fit.prepare8(wo))),
+            &mut || wo.iter().for_each(|wo| keep(raw.prepare8(wo))),
+        );
+        row(
+            "prepare8 of eight materials, Conserving over raw",
+            &mut || wo.iter().for_each(|wo| keep(fit8.prepare8(wo))),
+            &mut || wo.iter().for_each(|wo| keep(raw8.prepare8(wo))),
+        );
+    }
+
+    /// Slices of hits on the presets, in any order.
+    fn mixed<M: Model<Params = HairParams>>(self, level: Level, model: M) {
+        let presets = HairParams::presets().map(|(_, params)| params);
+        let raw = presets.map(|params| Material::new(&model, &params).with_level(level));
+        let fit =
+            presets.map(|params| Material::new(&Conserving(model), &params).with_level(level));
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "below the number of presets"
+        )]
+        let index: Vec<u32> = self
+            .inputs
+            .xi
+            .iter()
+            .map(|xi| (xi[0] * 6.0) as u32)
+            .collect();
+        let (fit, raw) = (
+            MaterialTable {
+                materials: &fit,
+                index: &index,
+            },
+            MaterialTable {
+                materials: &raw,
+                index: &index,
+            },
+        );
+        let [mut ours, mut base] = [(); 2].map(|()| Columns::new(self.inputs));
+        self.pair(
+            "eval_hits of six materials, Conserving over raw",
+            level.name(),
+            DIRECTIONS,
+            || {
+                let (hits, wi, _, out, _) = ours.parts();
+                black_box(fit.eval_hits(hits, wi, out).is_ok());
+            },
+            || {
+                let (hits, wi, _, out, _) = base.parts();
+                black_box(raw.eval_hits(hits, wi, out).is_ok());
+            },
+        );
+    }
+}
