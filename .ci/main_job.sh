@@ -47,6 +47,13 @@ refused 'shard' study --shard 5/4
 refused 'seed 1' study --quick --seed 2 --out "$dir/study"
 refused 'no part' merge "$dir/joined" "$dir/joined"
 
+# Promise: shader prints a model that a C compiler accepts, and refuses a name that is none.
+"$hairis" shader --model chiang --target c --gradient > "$dir/hairis.h"
+echo '#include "hairis.h"
+int main(void) { return hairis_chiang_prepare(hairis_chiang_material_brown(), hairis_vec3(0, 1, 0), 0.5f).fresnel > 1; }' > "$dir/main.c"
+cc -std=c99 -Wall -Wextra -Werror "$dir/main.c" -o "$dir/main" -lm && "$dir/main" || { echo "FAIL the header of chiang"; exit 1; }
+refused 'must be one of' shader --model fur --target c
+
 # Promise: eval answers a request.
 answer=$(echo '{"model":"cauchy","params":{"alpha":[-0.13,0.065,0.2],"beta":[0.13,0.065,0.26],"gamma_tt":0.17,"gamma_g":0.17,
 "phi_g":0.6,"i_r":[0.3,0.3,0.3],"i_tt":[0.8,0.6,0.4],"i_trt":[0.7,0.5,0.3],"i_g":0.5},"wo":[0,1,0],"wi":[0.6,0.8,0]}' |

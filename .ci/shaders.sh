@@ -22,12 +22,3 @@ for driver in /usr/share/vulkan/icd.d/lvp_icd*.json; do
 done
 # The build of the test command: another would take longer than the tests.
 cargo test -q --locked -p hairis-shaders --test main -- --ignored --nocapture
-
-# Promise: a user without Rust shades a hair with the header of the README.
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-hairis=$(.ci/release.sh)/hairis
-"$hairis" shader --model gaussian --target c > "$dir/hairis_gaussian.h"
-awk '/^```/ { inside = ($0 == "```c") } inside && !/^```/' variants/shaders/README.md > "$dir/main.c"
-(cd "$dir" && cc -std=c99 -pedantic -Wall -Wextra -Werror -O2 main.c -lm && ./a.out) | tee "$dir/out"
-grep -Eq '^value [0-9.]+ .*pdf [0-9.]+, weight [0-9.]+' "$dir/out" || { echo "FAIL the example of the header"; exit 1; }

@@ -283,11 +283,12 @@ impl<'a> Body<'a> {
         let Some(line) = self.function.graph().line(place_of_node) else {
             return;
         };
-        // Vectors and choices: parts of what is around them.
-        let is_model = !line.file().contains("simd") && !line.file().ends_with("frame.rs");
-        if is_model && line.file() != *file {
+        // Vectors and choices belong to the lines around them.
+        let place = place(line);
+        let is_part = place.starts_with("simd/") || place.starts_with("frame.rs:");
+        if !is_part && line.file() != *file {
             *file = line.file();
-            let _ = writeln!(out, "    // {}", place(line));
+            let _ = writeln!(out, "    // {place}");
         }
     }
 

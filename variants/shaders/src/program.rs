@@ -448,7 +448,7 @@ mod tests {
     use crate::graph::Rounding;
     use hairis::simd::Lanes;
 
-    /// A difference of products is not that of levels that fuse where products with sums may round twice.
+    /// A difference of products keeps its digits where products with sums round twice. That of levels that fuse does not.
     #[test]
     fn differences_of_products_survive_split_fma() {
         fn difference<A: Arithmetic>(factors: [f32; 4], rounding: Rounding) -> f32 {

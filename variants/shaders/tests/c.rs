@@ -217,6 +217,40 @@ fn fast_math_is_refused() {
     }
 }
 
+/// The example of the README, as a user without Rust compiles it.
+#[test]
+fn the_example_of_the_readme_runs() {
+    if !exists("gcc") {
+        return;
+    }
+    let readme = include_str!("../README.md");
+    let (_, rest) = readme.split_once("```c\n").expect("an example in C");
+    let (example, _) = rest.split_once("```").expect("its end");
+    let dir = TempDir::new().expect("a folder for the program");
+    let program = Program::of::<hairis::Published<hairis::Gaussian>>(Target::Exact);
+    fs::write(
+        dir.path().join("hairis_gaussian.h"),
+        print(&program, Language::C),
+    )
+    .expect("ours");
+    for (compiler, flag) in [("gcc", "-std=c99"), ("g++", "-std=c++17")] {
+        let binary = compile(dir.path(), example, compiler, &[flag, "-O2"]);
+        let output = Command::new(binary.expect("the example compiles")).output();
+        let output = output.expect("the example runs").stdout;
+        let text = String::from_utf8_lossy(&output).replace(',', " ");
+        println!("{text}");
+        let numbers = text
+            .split_whitespace()
+            .filter_map(|word| word.parse::<f32>().ok());
+        let numbers: Vec<f32> = numbers.collect();
+        let [r, _, _, pdf, weight, ..] = numbers[..] else {
+            panic!("seven numbers, got {text}")
+        };
+        // value * cos theta_i / pdf.
+        assert!(r > 0.0 && pdf > 0.0 && weight <= 1.001 * r / pdf, "{text}");
+    }
+}
+
 /// Two models in one file, and materials by name.
 #[test]
 fn headers_share_a_file_and_have_materials() {

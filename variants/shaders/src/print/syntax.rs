@@ -31,8 +31,10 @@ const C: &str = "\
 #define HAIRIS_NUMBER hairis_number
 #endif
 // Products and sums round apart. GCC reads no pragma: -ffp-contract=off, or -std=c99.
-#if (defined(__clang__) && !defined(HAIRIS_OPENCL)) || defined(_MSC_VER)
+#if defined(__clang__) && !defined(HAIRIS_OPENCL)
 #pragma STDC FP_CONTRACT OFF
+#elif defined(_MSC_VER)
+#pragma fp_contract(off)
 #endif
 // Loops over a function are vectorised where it is inlined.
 #if defined(__CUDACC__)
