@@ -356,8 +356,9 @@ impl<M: LobeModel> Model for M {
         let mut l = 0;
         while l < Lobe::COUNT {
             let kept: L = prepared.mixture.kept[l].lanes();
-            let [r, g, b] = albedo.0[l];
-            albedo.0[l] = min3([r * kept, g * kept, b * kept], most);
+            // Finite first: 0 times an infinity is NaN.
+            let [r, g, b] = min3(albedo.0[l], most);
+            albedo.0[l] = [r * kept, g * kept, b * kept];
             l += 1;
         }
         albedo
