@@ -4,14 +4,13 @@ use crate::support::Draws;
 use crate::tolerance as bound;
 use glam::Vec3;
 use hairis::{FiberFrame, FiberFrame8, Vec3x8};
-use hairis_conformance::published::props::{finite, three};
+use hairis_conformance::proptest::array::{uniform3, uniform8};
+use hairis_conformance::proptest::prelude::*;
+use hairis_conformance::strategies::{config, vectors};
 
 #[test]
 fn frames_are_orthonormal_and_right_handed() {
-    let mut draws = Draws(56);
-    for _ in 0..20_000 {
-        let [tangent, normal] =
-            [three(&mut draws, finite), three(&mut draws, finite)].map(Vec3::from_array);
+    proptest!(config(file!(), 20_000), |(tangent in vectors(), normal in vectors())| {
         for frame in [
             FiberFrame::from_tangent(tangent),
             FiberFrame::from_tangent_normal(tangent, normal),
@@ -40,18 +39,14 @@ fn frames_are_orthonormal_and_right_handed() {
                 "there and back in {frame:?}"
             );
         }
-    }
+    });
 }
 
 #[test]
 fn eight_lanes_round_as_sums_do_in_every_build() {
-    let mut draws = Draws(57);
-    for _ in 0..2000 {
-        let frames: [FiberFrame; 8] = core::array::from_fn(|_| {
-            FiberFrame::from_tangent(Vec3::from_array(three(&mut draws, finite)))
-        });
-        let vectors: [Vec3; 8] =
-            core::array::from_fn(|_| Vec3::new(draws.xi(), draws.xi(), draws.xi()));
+    let inside = uniform8(uniform3(0.0..1.0_f32).prop_map(Vec3::from_array));
+    proptest!(config(file!(), 2000), |(tangents in uniform8(vectors()), vectors in inside)| {
+        let frames = tangents.map(FiberFrame::from_tangent);
         let eight = FiberFrame8::from(frames);
         let (local, world) = (
             eight.to_local(&vectors.into()),
@@ -73,7 +68,7 @@ fn eight_lanes_round_as_sums_do_in_every_build() {
                 frames[lane]
             );
         }
-    }
+    });
 }
 
 #[test]

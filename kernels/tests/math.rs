@@ -2,7 +2,7 @@
 
 mod tails;
 
-use crate::support::{Draws, LargestError, narrow};
+use crate::support::{Draws, narrow};
 use crate::tolerance as bound;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use hairis::model::math::{
@@ -10,6 +10,7 @@ use hairis::model::math::{
     half_atan2, half_atan2_parts, log2_one_plus, sin_cos_absolute, sin_cos_twice, tan_half_turn,
 };
 use hairis::simd::{Lanes, Level, f32x8};
+use hairis_conformance::comparison::LargestError;
 
 const POINTS: u32 = 1 << 20;
 

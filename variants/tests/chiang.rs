@@ -3,9 +3,12 @@
 
 use crate::support::Draws;
 use hairis::{Hit, LobeMask, Material};
-use hairis_conformance::{Claims, Expected, Materials, Subject, Tolerance, conformance};
+use hairis_conformance::proptest::{self, prelude::*};
+use hairis_conformance::{
+    AnyMaterial, Claims, Expected, Materials, Subject, Tolerance, conformance, strategies,
+};
 use hairis_reference::{ChiangReference, Reference, Selection};
-use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParams, FarField, OffsetNodes};
+use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParams, FarField, OffsetNodes, Shifts};
 
 /// The model with one of its selections.
 struct ChiangFibers<const BY_CHANNEL: bool>;
@@ -115,6 +118,31 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
             ("wide", clear(1.0, 1e-3, 0.35, 1.2)),
             ("dense", clear(0.7, 0.7, 0.0, 4.0)),
         ]
+    }
+
+    fn any_material(&self) -> Option<BoxedStrategy<AnyMaterial<ChiangParams>>> {
+        let quarter = core::f32::consts::FRAC_PI_4;
+        let roughness = || strategies::range([1e-3, 1.0]);
+        let fields = (
+            (roughness(), roughness()),
+            strategies::range([-quarter, quarter]),
+            strategies::range([1.0, 4.0]),
+            strategies::intensities(f32::MAX),
+            proptest::sample::select(vec![Shifts::DEon, Shifts::SmallAngle]),
+        );
+        let material = |((beta_m, beta_n), tilt, eta, sigma_a, shifts)| {
+            let desc = ChiangDesc {
+                beta_m,
+                beta_n,
+                tilt,
+                eta,
+                sigma_a,
+                shifts,
+            };
+            let code = format!("{desc:?}").replace("shifts: ", "shifts: Shifts::");
+            AnyMaterial::new(params(desc), format!("params({code})"))
+        };
+        Some(fields.prop_map(material).boxed())
     }
 
     fn claims(&self) -> Claims {

@@ -2,7 +2,10 @@
 
 use crate::support::Draws;
 use hairis::{Hit, Lobe, LobeMask};
-use hairis_conformance::{Claims, Expected, Materials, Subject, Tolerance, conformance};
+use hairis_conformance::proptest::prelude::*;
+use hairis_conformance::{
+    AnyMaterial, Claims, Expected, Materials, Subject, Tolerance, conformance, strategies,
+};
 use hairis_reference::{KajiyaKayReference, Reference};
 use hairis_variants::KajiyaKay;
 use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc, KajiyaKayParams, cosine_integral};
@@ -103,6 +106,24 @@ impl Subject for KajiyaKayFibers {
                 ..self.desc(80.0)
             }),
         )]
+    }
+
+    fn any_material(&self) -> Option<BoxedStrategy<AnyMaterial<KajiyaKayParams>>> {
+        let form = self.0;
+        let rgb = || strategies::intensities(f32::MAX);
+        let fields = (rgb(), rgb(), strategies::range([1.0, 1e4]));
+        let material = move |(kd, ks, exponent)| {
+            let desc = KajiyaKayDesc {
+                kd,
+                ks,
+                exponent,
+                form,
+            };
+            let code = format!("{desc:?}").replace("form: ", "form: Form::");
+            let code = format!("params({code})");
+            AnyMaterial::new(params(desc), code)
+        };
+        Some(fields.prop_map(material).boxed())
     }
 
     fn claims(&self) -> Claims {

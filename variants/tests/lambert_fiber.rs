@@ -10,7 +10,8 @@ use glam::Vec3;
 use hairis::columns::EvalColumns;
 use hairis::simd::Level;
 use hairis::{Hit, Lobe, LobeMask, Material, Material8};
-use hairis_conformance::{Claims, Materials, Subject};
+use hairis_conformance::proptest::prelude::*;
+use hairis_conformance::{AnyMaterial, Claims, Materials, Subject, strategies};
 
 const DIFFUSE: Lobe = Lobe::slot(0);
 
@@ -62,6 +63,16 @@ impl Subject for LambertFibers {
                 width: 0.1,
             },
         )]
+    }
+
+    fn any_material(&self) -> Option<BoxedStrategy<AnyMaterial<Fiber<f32>>>> {
+        let rgb = || strategies::intensities(1e30);
+        let fields = (rgb(), rgb(), strategies::range([1e-3, 1.0]));
+        Some(
+            fields
+                .prop_map(|(kd, ks, width)| Fiber { kd, ks, width }.into())
+                .boxed(),
+        )
     }
 
     fn claims(&self) -> Claims {

@@ -1,10 +1,11 @@
 //! The logarithm and the tails of the normal distribution.
 
 use super::{POINTS, both};
-use crate::support::{LargestError, narrow};
+use crate::support::narrow;
 use crate::tolerance as bound;
 use hairis::model::math::{gaussian, log2, normal_tail, normal_tail_inverse, normal_tail_ratio};
 use hairis::simd::Lanes;
+use hairis_conformance::comparison::LargestError;
 use hairis_reference::Real;
 
 /// Probability that a standard normal number is above `x`.

@@ -1,12 +1,14 @@
 //! Energy and weights: albedo, furnace, bounds of weights, reciprocity.
 
+use crate::cases::Property;
+use crate::cases::inputs::Inputs;
 use crate::erased::{ErasedBsdf, ErasedSubject, Which};
-use crate::failure::{Failure, Outcome, Worst};
+use crate::failure::{Failure, Outcome, Worst, not_claimed};
 use crate::integral::Integral;
 use crate::mesh::Mesh;
 use crate::near::Nearby;
-use crate::probe::{Draws, cos_theta, direction, hits, hits_and, masks, triples};
-use core::f64::consts::{FRAC_PI_2, PI};
+use crate::probe::{Draws, cos_theta, hits, hits_and, triples};
+use core::cell::Cell;
 use hairis::simd::Level;
 use hairis::{Eval, LobeMask};
 
@@ -38,7 +40,7 @@ fn reflected(bsdf: &dyn ErasedBsdf, mesh: &Mesh, channel: usize) -> Integral {
 pub fn albedo_is_the_integral(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "albedo is the integral of S cos theta_i";
     let claims = subject.claims();
-    let mut worst = Worst::new(NAME, "albedo", claims.albedo);
+    let mut worst = Worst::new(NAME, "albedo (`Claims::albedo`)", claims.albedo);
     for material in subject.set(Which::Everyday).iter() {
         let name = material.name();
         for hit in hits() {
@@ -58,8 +60,9 @@ pub fn albedo_is_the_integral(subject: &dyn ErasedSubject) -> Outcome {
                     );
                     // A lobe that lies off the sphere returns next to nothing.
                     worst.see((got - want).abs() / want.max(1e-3), || {
-                        format!("{got}, integral {want}: channel {c} of {lobe:?}, {name} {hit:?}")
-                    })?;
+                        let lobe = subject.lobe(lobe);
+                        format!("{got}, integral {want}: channel {c} of {lobe}, {name} {hit:?}")
+                    });
                 }
             }
         }
@@ -76,7 +79,7 @@ pub fn albedo_is_the_integral(subject: &dyn ErasedSubject) -> Outcome {
 pub fn white_furnace(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "white materials return all light";
     let Some(tolerance) = subject.claims().furnace else {
-        return Ok(());
+        return not_claimed(NAME, "Claims::furnace");
     };
     let white = subject.set(Which::White);
     if white.len() == 0 {
@@ -85,10 +88,10 @@ pub fn white_furnace(subject: &dyn ErasedSubject) -> Outcome {
             "the subject has no white material to test it on",
         ));
     }
-    let mut worst = Worst::new(NAME, "the sum of albedos", tolerance);
+    let mut worst = Worst::new(NAME, "the sum of albedos (`Claims::furnace`)", tolerance);
     let mut integral = Worst::new(
         NAME,
-        "the integral of S cos theta_i",
+        "the integral of S cos theta_i (`Claims::furnace`, `Claims::integral`)",
         tolerance.max(subject.claims().integral),
     );
     let mut draws = Draws(0xf00d);
@@ -100,18 +103,18 @@ pub fn white_furnace(subject: &dyn ErasedSubject) -> Outcome {
                 let sum: f64 = albedo.iter().map(|lobe| f64::from(lobe[c])).sum();
                 worst.see((sum - 1.0).abs(), || {
                     format!("{sum}: channel {c}, {name} {hit:?}")
-                })?;
+                });
             }
         }
         for hit in hits() {
             let bsdf = material.prepare(hit);
             let mesh = Mesh::new(subject, material, &hit, &*bsdf, LobeMask::ALL);
             let sum = reflected(&*bsdf, &mesh, 0).total();
-            integral.see((sum - 1.0).abs(), || format!("{sum}: {name} {hit:?}"))?;
+            integral.see((sum - 1.0).abs(), || format!("{sum}: {name} {hit:?}"));
         }
     }
-    integral.report()?;
-    worst.report()
+    worst.report()?;
+    integral.report()
 }
 
 /// No weight is above the bound that the model states, for all lobes and for some, where it states one.
@@ -121,51 +124,52 @@ pub fn white_furnace(subject: &dyn ErasedSubject) -> Outcome {
 /// At the first weight above its bound.
 pub fn weights_are_bounded(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "weights are below their bound";
-    const PACKETS: usize = 64;
-    let mut draws = Draws(0xb0d5);
-    let masks = masks();
-    let (mut closest, mut seen) = (0.0_f64, 0_usize);
-    for material in subject.set(Which::Everyday).iter() {
-        let name = material.name();
-        for (round, hit) in hits_and(50, &mut draws).into_iter().enumerate() {
-            let mask = if round % 2 == 0 {
-                LobeMask::ALL
-            } else {
-                masks[round / 2 % 15 + 1]
-            };
-            let Some(bound) = material.weight_bound(&hit, mask) else {
-                continue;
-            };
-            let bsdf = material.prepare(hit).with_lobes(mask);
-            for packet in 0..PACKETS {
-                let mut xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
-                if packet % 4 == 0 {
-                    // The ends of a lobe are where weights are large.
-                    xi[packet / 4 % 8][1 + packet % 2] = if packet % 8 == 0 {
-                        0.0
-                    } else {
-                        crate::probe::LAST
-                    };
-                }
-                for level in Level::available() {
-                    let eight = bsdf.with_level(level).sample8(&triples(&xi));
-                    for s in (0..8).filter_map(|lane| eight.lane(lane)) {
-                        let most = s.weight.into_iter().fold(0.0, f32::max);
-                        (closest, seen) = (closest.max(f64::from(most) / bound), seen + 1);
-                        if f64::from(most) > bound * (1.0 + 1e-5) {
-                            let message = format!(
-                                "{most} is above {bound}: {s:?} {name} {mask:?} {hit:?} on {level}"
-                            );
-                            return Err(Failure::new(NAME, message));
-                        }
-                    }
+    let (closest, seen) = (Cell::new(0.0_f64), Cell::new(0_usize));
+    let property = Property {
+        name: NAME,
+        path: "bounds::weights_are_bounded",
+        subject,
+        which: Which::Everyday,
+        inputs: Inputs::Ends,
+        tolerances: true,
+        cases: 4000,
+    };
+    property.check([], |trial, []| {
+        let mask = trial.lobes;
+        let bound = |lane: usize| trial.material(lane).weight_bound(&trial.hits[lane], mask);
+        let bounds: [_; 8] = core::array::from_fn(bound);
+        for level in Level::available() {
+            let each = trial
+                .prepare(level, [0, 1, 2, 3, 4, 5, 6, 7])
+                .with_lobes(mask);
+            let eight = each.with_level(level).sample8(&triples(&trial.xi));
+            for (lane, bound) in bounds.into_iter().enumerate() {
+                let (Some(s), Some(bound)) = (eight.lane(lane), bound) else {
+                    continue;
+                };
+                let most = f64::from(s.weight.into_iter().fold(0.0, f32::max));
+                closest.set(closest.get().max(most / bound));
+                seen.set(seen.get() + 1);
+                if most > bound * (1.0 + 1e-5) {
+                    let (lobes, at) = (subject.lobes(mask), trial.at(lane, level));
+                    let message = format!("{most} is above {bound}: {s:?}, {lobes}, {at}");
+                    return Err(Failure {
+                        excess: most / bound,
+                        ..Failure::new(NAME, message)
+                    });
                 }
             }
         }
+        Ok(())
+    })?;
+    if seen.get() == 0 {
+        return not_claimed(NAME, "Subject::weight_bound");
     }
-    if seen > 0 {
-        println!("{NAME}: the largest of {seen} is {closest:.3} of its bound");
-    }
+    println!(
+        "{NAME}: the largest of {} is {:.3} of its bound",
+        seen.get(),
+        closest.get()
+    );
     Ok(())
 }
 
@@ -179,31 +183,36 @@ pub fn eval_is_reciprocal(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "S is reciprocal";
     let claims = subject.claims();
     let Some(tolerance) = claims.reciprocal else {
-        return Ok(());
+        return not_claimed(NAME, "Claims::reciprocal");
     };
-    let mut worst = Worst::new(NAME, "S with its directions exchanged", tolerance);
-    let mut draws = Draws(0x4ec1);
-    for material in subject.set(Which::Everyday).iter() {
-        let name = material.name();
-        for round in 0..2000 {
-            let mut any =
-                || direction(draws.between(-FRAC_PI_2, FRAC_PI_2), draws.between(-PI, PI));
-            let (a, mut b) = (any(), any());
-            let here = Nearby::new(material, a.into(), claims.near_field);
-            if round % 2 == 0 {
-                b = here.bsdf().sample(draws.xi3()).map_or(b, |s| s.wi);
-            }
+    let quantity = (
+        "S with its directions exchanged (`Claims::reciprocal`)",
+        tolerance,
+    );
+    let property = Property {
+        name: NAME,
+        path: "bounds::eval_is_reciprocal",
+        subject,
+        which: Which::Everyday,
+        inputs: Inputs::Everyday,
+        tolerances: true,
+        cases: 1500,
+    };
+    property.check([quantity], |trial, [worst]| {
+        for lane in 0..8 {
+            let (a, b) = (trial.hits[lane].wo.into(), trial.wi[lane]);
             if cos_theta(a).min(cos_theta(b)) < 1e-3 {
                 continue;
             }
+            let material = trial.material(lane);
+            let here = Nearby::new(material, a.into(), claims.near_field);
             let there = material.prepare(b.into());
             let (forth, back) = (here.bsdf().eval_pdf(b), there.eval_pdf(a));
             // Densities are not reciprocal.
             let error = here.error(Eval { pdf: 0.0, ..back }, Eval { pdf: 0.0, ..forth }, b);
-            worst.see(error, || {
-                format!("{forth:?} and {back:?}: {name} {a:?} {b:?}")
-            })?;
+            let at = || format!("{forth:?} and {back:?}: {}", trial.at(lane, "one lane"));
+            worst.see(error, at);
         }
-    }
-    worst.report()
+        Ok(())
+    })
 }

@@ -5,6 +5,8 @@
 //! in their unused lanes what raises an exception; divisions are kept from it ([`Lanes::quotient`](hairis::simd::Lanes::quotient)). Run
 //! these properties in a release build too. Only x86-64 is tested.
 
+use crate::cases::Property;
+use crate::cases::inputs::Inputs;
 use crate::erased::{COLUMNS, Direction, ErasedBsdf, ErasedSubject, NamedMaterial, Which};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, columns, hits8, packet, triples};
@@ -21,10 +23,8 @@ const MODES: [u32; 8] = [
 ];
 /// Rounding down, without denormals.
 pub(crate) const DOWN: u32 = MODES[5];
-/// Packets per material and mode.
-const ROUNDS: usize = 100;
-/// Packets per material of everyday input.
-const EVERYDAY: usize = 300;
+/// Packets of eight materials.
+const CASES: usize = 600;
 
 /// Runs `f` with rounding and denormals as in `mode`.
 pub(crate) fn with_mode<T>(mode: u32, f: impl FnOnce() -> T) -> T {
@@ -79,22 +79,6 @@ fn exceptions(what: &str, flags: u32, at: &str) -> Failure {
     )
 }
 
-/// A unit direction: any, along an axis, or next to that of the fibre.
-fn unit(draws: &mut Draws) -> Direction {
-    let off = *draws.pick(&[1e-20, 1e-12, 1e-7, 0.99e-5, 1.01e-5, 1e-4_f32]);
-    let any = draws.direction();
-    *draws.pick(&[
-        any,
-        any,
-        any,
-        any,
-        Direction::new(1.0, 0.0, 0.0),
-        Direction::new(0.0, -1.0, 0.0),
-        Direction::new(-0.6, 0.0, -0.8),
-        Direction::new(-1.0, off, -off),
-    ])
-}
-
 /// Results for unit directions are finite and not negative in all four rounding modes, with denormals and without: on one lane,
 /// on eight, and in slices.
 ///
@@ -102,15 +86,30 @@ fn unit(draws: &mut Draws) -> Direction {
 ///
 /// At the first result that is not.
 pub fn any_rounding_is_finite(subject: &dyn ErasedSubject) -> Outcome {
-    for mode in MODES {
-        let in_mode = |failure: Failure| Failure {
-            message: format!("mode {mode:#x}: {}", failure.message),
-            ..failure
-        };
-        with_mode(mode, || totality::sweep(subject, ROUNDS, unit)).map_err(in_mode)?;
-        with_mode(mode, || slices_are_finite(subject)).map_err(in_mode)?;
-    }
-    Ok(())
+    let in_mode = |mode: u32, failure: Failure| Failure {
+        property: NAME,
+        message: format!("mode {mode:#x}: {}", failure.message),
+        ..failure
+    };
+    let property = Property {
+        name: NAME,
+        path: "environment::any_rounding_is_finite",
+        subject,
+        which: Which::WithExtremes,
+        inputs: Inputs::Awkward,
+        tolerances: true,
+        cases: CASES,
+    };
+    property.check([], |trial, []| {
+        MODES.into_iter().try_for_each(|mode| {
+            let outcome = with_mode(mode, || totality::is_sound(subject, trial));
+            outcome.map_err(|failure| in_mode(mode, failure))
+        })
+    })?;
+    MODES.into_iter().try_for_each(|mode| {
+        let outcome = with_mode(mode, || slices_are_finite(subject));
+        outcome.map_err(|failure| in_mode(mode, failure))
+    })
 }
 
 fn slices_are_finite(subject: &dyn ErasedSubject) -> Outcome {
@@ -118,7 +117,7 @@ fn slices_are_finite(subject: &dyn ErasedSubject) -> Outcome {
     for material in subject.set(Which::WithExtremes).iter() {
         let (name, bsdf) = (material.name(), material.prepare(draws.hit()));
         let rows: Vec<(Direction, [f32; 3])> =
-            (0..69).map(|_| (unit(&mut draws), draws.xi3())).collect();
+            (0..69).map(|_| (draws.direction(), draws.xi3())).collect();
         let wi = columns(69, |n| {
             let (wi, _) = rows[n as usize];
             [wi.x, wi.y, wi.z]
@@ -162,62 +161,65 @@ fn slices_are_finite(subject: &dyn ErasedSubject) -> Outcome {
 ///
 /// At the first call that raises one.
 pub fn everyday_input_raises_no_exception(subject: &dyn ErasedSubject) -> Outcome {
-    let mut draws = Draws(0xfe);
-    for material in subject.set(Which::Everyday).iter() {
-        let name = material.name();
-        if material
-            .prepare(draws.hit())
+    let property = Property {
+        name: "everyday input raises no exception",
+        path: "environment::everyday_input_raises_no_exception",
+        subject,
+        which: Which::Everyday,
+        inputs: Inputs::Everyday,
+        tolerances: true,
+        cases: 2 * CASES,
+    };
+    property.check([], |trial, []| {
+        let (material, hits, wi, xi) = (trial.material(0), trial.hits, trial.wi, trial.xi);
+        // The number 0 may sample the axis itself.
+        if xi.as_flattened().contains(&0.0) {
+            return Ok(());
+        }
+        let one = material.prepare(hits[0]);
+        if one
             .albedo()
             .0
             .as_flattened()
             .iter()
             .all(|albedo| *albedo == 0.0)
         {
-            continue;
+            return Ok(());
         }
-        for round in 0..EVERYDAY {
-            let hits = core::array::from_fn(|_| draws.hit());
-            let wi: [Direction; 8] = core::array::from_fn(|_| draws.direction());
-            let (hits8, wi8) = (hits8(&hits), packet(&wi));
-            let by_axis = [wi8.x.to_array(), wi8.y.to_array(), wi8.z.to_array()];
-            let one = material.prepare(hits[0]);
-            let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
-            let xi8 = triples(&xi);
-            scalar_is_quiet(material, &*one, hits[0], (wi[0], xi[0]))?;
-            for level in Level::available() {
-                let at = || format!("{name} on {level}, {hits:?} {wi:?}");
-                quiet("prepare8", at, || {
-                    NamedMaterial::prepare_packed([material; 8], level, hits8)
-                })?;
-                let each = NamedMaterial::prepare_packed([material; 8], level, hits8);
-                quiet("eval_pdf8 of one hit", at, || {
-                    one.with_level(level).eval_pdf8(&wi8)
-                })?;
-                quiet("eval_pdf8 of eight hits", at, || {
-                    each.with_level(level).eval_pdf8(&wi8)
-                })?;
-                quiet("sample8 of one hit", at, || {
-                    one.with_level(level).sample8(&xi8)
-                })?;
-                quiet("sample8 of eight hits", at, || {
-                    each.with_level(level).sample8(&xi8)
-                })?;
-                quiet("lobes8", at, || each.lobes8(&wi8))?;
-                if round % 8 == 0 {
-                    quiet("albedo8", at, || each.with_level(level).albedo8())?;
-                    quiet("conserving", at, || each.with_level(level).conserving())?;
-                }
-                let mut room = [[0.0; 8]; 4];
-                let len = round % 9;
-                quiet("eval_columns", at, || {
-                    let out = room.each_mut().map(|column| &mut column[..len]);
-                    one.with_level(level)
-                        .eval_array(by_axis.each_ref().map(|column| &column[..len]), out)
-                })?;
-            }
+        let (hits8, wi8, xi8) = (hits8(&hits), packet(&wi), triples(&xi));
+        let by_axis = [wi8.x.to_array(), wi8.y.to_array(), wi8.z.to_array()];
+        scalar_is_quiet(material, &*one, hits[0], (wi[0], xi[0]))?;
+        for level in Level::available() {
+            let at = || format!("{} on {level}, {hits:?} {wi:?}", material.name());
+            quiet("prepare8", at, || {
+                NamedMaterial::prepare_packed([material; 8], level, hits8)
+            })?;
+            let each = NamedMaterial::prepare_packed([material; 8], level, hits8);
+            quiet("eval_pdf8 of one hit", at, || {
+                one.with_level(level).eval_pdf8(&wi8)
+            })?;
+            quiet("eval_pdf8 of eight hits", at, || {
+                each.with_level(level).eval_pdf8(&wi8)
+            })?;
+            quiet("sample8 of one hit", at, || {
+                one.with_level(level).sample8(&xi8)
+            })?;
+            quiet("sample8 of eight hits", at, || {
+                each.with_level(level).sample8(&xi8)
+            })?;
+            quiet("lobes8", at, || each.lobes8(&wi8))?;
+            quiet("albedo8", at, || each.with_level(level).albedo8())?;
+            quiet("conserving", at, || each.with_level(level).conserving())?;
+            let mut room = [[0.0; 8]; 4];
+            let len = trial.order[0];
+            quiet("eval_columns", at, || {
+                let out = room.each_mut().map(|column| &mut column[..len]);
+                one.with_level(level)
+                    .eval_array(by_axis.each_ref().map(|column| &column[..len]), out)
+            })?;
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 /// Checks that calls on one lane raise no exception.

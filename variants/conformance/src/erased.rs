@@ -4,26 +4,74 @@
 
 pub(crate) mod hits;
 
+use crate::cases::Source;
+use crate::cases::inputs::Choices;
 use crate::subject::{Claims, Expected, ParamsOf, Subject};
+use core::any::Any;
+use core::fmt;
 use glam::Vec3;
 use hairis::columns::{EvalColumns, LengthError, SampleColumns};
 use hairis::model::{DynBsdf, DynBsdf8, Model};
 use hairis::simd::Level;
 use hairis::{Bsdf, Bsdf8, Hit, Hit8, Lobe, LobeMask, Material, Material8};
+use proptest::prelude::*;
+use std::rc::Rc;
 
 /// A direction, or any vector, in the fibre's frame.
 pub(crate) type Direction = Vec3;
 
 /// A [`Subject`] without its model's type: pass a reference to any subject.
-pub trait ErasedSubject: Sync {
+pub trait ErasedSubject {
     /// See [`Subject::claims`].
     #[doc(hidden)]
     fn claims(&self) -> Claims;
-    /// Number of the model's lobes.
+    /// Names of the model's lobes.
     #[doc(hidden)]
-    fn lobe_count(&self) -> usize;
+    fn lobe_names(&self) -> &'static [&'static str];
     #[doc(hidden)]
     fn set(&self, which: Which) -> Box<dyn MaterialSet + '_>;
+    /// Materials to draw from.
+    #[doc(hidden)]
+    fn choices(&self, which: Which) -> Choices;
+    #[doc(hidden)]
+    fn set_of(&self, choices: [&Choice; 8]) -> Box<dyn MaterialSet + '_>;
+    #[doc(hidden)]
+    fn source(&self) -> Source {
+        Source::Fresh
+    }
+}
+
+/// Parameters of a material that was drawn or pasted, without their type.
+#[derive(Clone)]
+pub struct Choice {
+    params: Rc<dyn Any>,
+    name: &'static str,
+    code: Rc<str>,
+}
+
+/// Name of materials that have none.
+const ANY: &str = "any material";
+
+impl Choice {
+    pub(crate) fn pasted(params: Rc<dyn Any>) -> Self {
+        let (name, code) = ("the pasted material", "material".into());
+        Self { params, name, code }
+    }
+
+    pub(crate) fn is_named(&self) -> bool {
+        self.name != ANY
+    }
+
+    /// Code of the parameters; `subject` is the subject of the test.
+    pub(crate) fn code(&self) -> &str {
+        &self.code
+    }
+}
+
+impl fmt::Debug for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.code)
+    }
 }
 
 /// Materials of a subject.
@@ -31,7 +79,7 @@ pub trait ErasedSubject: Sync {
 pub enum Which {
     /// [`Subject::materials`].
     Everyday,
-    /// Materials of the subject, with [`Subject::extremes`].
+    /// Materials of the subject, with [`Subject::extremes`]; to draw from, any legal ones as well.
     WithExtremes,
     /// The everyday ones, and [`Subject::random_materials`].
     WithRandom,
@@ -40,6 +88,29 @@ pub enum Which {
 }
 
 impl dyn ErasedSubject + '_ {
+    /// Number of the model's lobes.
+    pub(crate) fn lobe_count(&self) -> usize {
+        self.lobe_names().len()
+    }
+
+    /// Name of a lobe.
+    pub(crate) fn lobe(&self, lobe: Lobe) -> &'static str {
+        self.lobe_names()
+            .get(lobe.index())
+            .copied()
+            .unwrap_or("no lobe")
+    }
+
+    /// Names of the lobes of a mask.
+    pub(crate) fn lobes(&self, mask: LobeMask) -> String {
+        if mask == LobeMask::ALL {
+            return "all lobes".to_owned();
+        }
+        let names: Vec<_> = self.slots().filter(|lobe| mask.contains(*lobe)).collect();
+        let names: Vec<_> = names.into_iter().map(|lobe| self.lobe(lobe)).collect();
+        format!("lobes [{}]", names.join(", "))
+    }
+
     /// The slots that the model names.
     pub(crate) fn slots(&self) -> impl Iterator<Item = Lobe> + use<> {
         Lobe::ALL.into_iter().take(self.lobe_count())
@@ -58,12 +129,46 @@ impl<S: Subject> ErasedSubject for S {
         Subject::claims(self)
     }
 
-    fn lobe_count(&self) -> usize {
-        S::Model::LOBES.len()
+    fn lobe_names(&self) -> &'static [&'static str] {
+        S::Model::LOBES
     }
 
     fn set(&self, which: Which) -> Box<dyn MaterialSet + '_> {
         Box::new(Set::new(self, which))
+    }
+
+    fn choices(&self, which: Which) -> Choices {
+        let choice = |(name, params, code): Described<S>| Choice {
+            params: Rc::new(params),
+            name,
+            code: code.into(),
+        };
+        let named: Vec<_> = described(self, which).into_iter().map(choice).collect();
+        let named = proptest::sample::select(named);
+        match self
+            .any_material()
+            .filter(|_| matches!(which, Which::WithExtremes))
+        {
+            None => named.boxed(),
+            Some(any) => {
+                let any = any.prop_map(|any| Choice {
+                    params: Rc::new(any.params),
+                    name: ANY,
+                    code: any.code.into(),
+                });
+                prop_oneof![named, any].boxed()
+            }
+        }
+    }
+
+    fn set_of(&self, choices: [&Choice; 8]) -> Box<dyn MaterialSet + '_> {
+        let params = |choice: &Choice| {
+            let params = choice.params.clone().downcast();
+            params.unwrap_or_else(|_| panic!("{choice:?} is of another model"))
+        };
+        let names = choices.map(|choice| choice.name).to_vec();
+        let params = choices.map(params).to_vec();
+        Box::new(Set::with(self, names, params))
     }
 }
 
@@ -81,7 +186,11 @@ pub trait MaterialSet {
 
 impl dyn MaterialSet + '_ {
     pub(crate) fn iter(&self) -> impl Iterator<Item = NamedMaterial<'_>> {
-        (0..self.len()).map(|index| NamedMaterial { set: self, index })
+        (0..self.len()).map(|index| self.get(index))
+    }
+
+    pub(crate) fn get(&self, index: usize) -> NamedMaterial<'_> {
+        NamedMaterial { set: self, index }
     }
 }
 
@@ -133,34 +242,52 @@ impl NamedMaterial<'_> {
 pub(crate) struct Set<'s, S: Subject> {
     subject: &'s S,
     names: Vec<&'static str>,
-    params: Vec<ParamsOf<S>>,
+    params: Vec<Rc<ParamsOf<S>>>,
     pub(crate) materials: Vec<Material<S::Model>>,
+}
+
+/// Name, parameters and their code.
+type Described<S> = (&'static str, ParamsOf<S>, String);
+
+/// Materials that a subject names.
+fn described<S: Subject>(subject: &S, which: Which) -> Vec<Described<S>> {
+    let list = |function: &str, materials: Vec<(&'static str, ParamsOf<S>)>| {
+        let each = materials.into_iter().enumerate();
+        let each = each.map(|(index, (name, params))| {
+            let code = format!("subject.{function}().swap_remove({index}).1");
+            (name, params, code)
+        });
+        each.collect::<Vec<_>>()
+    };
+    let everyday = || list("materials", subject.materials());
+    let more = match which {
+        Which::White => return list("white", subject.white()),
+        Which::Everyday => Vec::new(),
+        Which::WithExtremes => list("extremes", subject.extremes()),
+        Which::WithRandom => {
+            let random = subject.random_materials().into_iter().enumerate();
+            let random = random.map(|(index, params)| {
+                let code = format!("subject.random_materials().swap_remove({index})");
+                ("a random material", params, code)
+            });
+            random.collect()
+        }
+    };
+    everyday().into_iter().chain(more).collect()
 }
 
 impl<'s, S: Subject> Set<'s, S> {
     pub(crate) fn new(subject: &'s S, which: Which) -> Self {
-        let mut materials = if matches!(which, Which::White) {
-            subject.white()
-        } else {
-            subject.materials()
-        };
-        match which {
-            Which::Everyday | Which::White => {}
-            Which::WithExtremes => materials.extend(subject.extremes()),
-            Which::WithRandom => {
-                let random = subject.random_materials();
-                materials.extend(
-                    random
-                        .into_iter()
-                        .map(|params| ("a random material", params)),
-                );
-            }
-        }
-        let (names, params): (Vec<_>, Vec<_>) = materials.into_iter().unzip();
-        let materials = params
-            .iter()
-            .map(|params| Material::new(&subject.model(), params))
-            .collect();
+        let named = described(subject, which).into_iter();
+        let (names, params) = named
+            .map(|(name, params, _)| (name, Rc::new(params)))
+            .unzip();
+        Self::with(subject, names, params)
+    }
+
+    fn with(subject: &'s S, names: Vec<&'static str>, params: Vec<Rc<ParamsOf<S>>>) -> Self {
+        let material = |params: &Rc<_>| Material::new(&subject.model(), params);
+        let materials = params.iter().map(material).collect();
         Self {
             subject,
             names,

@@ -1,14 +1,20 @@
 //! Failures of properties.
 
+use crate::comparison::LargestError;
 use core::fmt;
 
 /// Failure of a property: the query, its place, the result and the expectation.
-#[derive(Clone, PartialEq, Eq)]
+#[derive(Clone, PartialEq)]
 pub struct Failure {
     /// Name of the property.
     pub property: &'static str,
     /// Material, directions, numbers, lane and level, and the results got and wanted.
     pub message: String,
+    /// The smallest case that fails, as a block of code whose value is the outcome of the property;
+    /// `subject` is the subject under test. `None` if the property draws no cases.
+    pub case: Option<String>,
+    /// Error over its tolerance; infinite where there is none.
+    pub(crate) excess: f64,
 }
 
 impl Failure {
@@ -16,13 +22,22 @@ impl Failure {
         Self {
             property,
             message: message.into(),
+            case: None,
+            excess: f64::INFINITY,
         }
     }
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.property, self.message)
+        write!(f, "{}: {}", self.property, self.message)?;
+        match &self.case {
+            Some(case) => write!(
+                f,
+                "\nsmallest case that fails, where `subject` is yours:\n{case}"
+            ),
+            None => Ok(()),
+        }
     }
 }
 
@@ -37,57 +52,77 @@ impl core::error::Error for Failure {}
 /// Whether a property holds.
 pub type Outcome = Result<(), Failure>;
 
-/// The largest error seen of one quantity, compared with its tolerance at once.
+/// Outcome of a property that belongs to a claim that the subject does not make.
+pub(crate) fn not_claimed(property: &str, claim: &str) -> Outcome {
+    println!("{property}: not claimed (`{claim}`)");
+    Ok(())
+}
+
+/// The largest error of one quantity against its tolerance.
+#[derive(Clone)]
 pub(crate) struct Worst {
     property: &'static str,
     what: &'static str,
     tolerance: f64,
-    error: f64,
+    largest: LargestError,
 }
 
 impl Worst {
+    /// No error yet of a quantity; `what` names it, and the claim that states the tolerance.
     pub(crate) fn new(property: &'static str, what: &'static str, tolerance: f64) -> Self {
         Self {
             property,
             what,
             tolerance,
-            error: 0.0,
+            largest: LargestError::default(),
         }
     }
 
-    /// Fails if `error` is above the tolerance or not a number.
-    pub(crate) fn see(&mut self, error: f64, at: impl FnOnce() -> String) -> Outcome {
-        if error > self.error {
-            self.error = error;
-        }
-        if error <= self.tolerance {
-            return Ok(());
-        }
-        Err(self.failure(error, &at()))
+    /// Takes an error into account, and its place if it is above the tolerance.
+    pub(crate) fn see(&mut self, error: f64, at: impl FnOnce() -> String) {
+        let is_allowed = error <= self.tolerance;
+        let place = || if is_allowed { String::new() } else { at() };
+        self.largest.see(error, place);
     }
 
-    fn failure(&self, error: f64, at: &str) -> Failure {
+    /// Takes the errors of another.
+    pub(crate) fn merge(&mut self, other: Self) {
+        self.see(other.largest.error, || other.largest.at);
+    }
+
+    /// Fails if the largest error is above the tolerance or not a number.
+    pub(crate) fn verdict(&self) -> Outcome {
         let Self {
             property,
             what,
             tolerance,
-            ..
+            largest: LargestError { error, at },
         } = self;
-        Failure::new(
-            property,
-            format!("{what} is off by {error:.3e}, allowed {tolerance:.1e}: {at}"),
-        )
+        if error <= tolerance {
+            return Ok(());
+        }
+        let message = format!("{what} is off by {error:.3e}, allowed {tolerance:.1e}: {at}");
+        let excess = if error.is_nan() {
+            f64::INFINITY
+        } else {
+            error / tolerance
+        };
+        Err(Failure {
+            excess,
+            ..Failure::new(property, message)
+        })
     }
 
-    /// Prints the worst case, for the record of a tolerance.
+    /// Prints the largest error, for the record of a tolerance, and fails if it is above that.
     pub(crate) fn report(self) -> Outcome {
         let Self {
             property,
             what,
             tolerance,
-            error,
-        } = self;
+            largest,
+        } = &self;
+        let error = largest.error;
         println!("{property}: {what} measured {error:.2e}, allowed {tolerance:.1e}");
-        Ok(())
+        self.verdict()
     }
 }

@@ -1,91 +1,37 @@
 //! Eight lanes give the results of one, whatever their position and on every level.
 
-use crate::erased::{Direction, ErasedBsdf8, ErasedSubject, NamedMaterial, Which};
+use crate::cases::inputs::Inputs;
+use crate::cases::{Property, Trial};
+use crate::comparison::relative;
+use crate::erased::{ErasedBsdf8, ErasedSubject, NamedMaterial, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::near::{Nearby, sample_is_near};
-use crate::probe::{Draws, cos_theta, hits8, packet, relative, triples};
+use crate::probe::{cos_theta, hits8, packet, triples};
 use crate::subject::Claims;
 use hairis::simd::{Level, f32x8};
 use hairis::{Eval, Hit, Lobe, PerLobe, Sample8};
 
+const ORDER: [usize; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+
 /// Packets of mixed materials.
 const ROUNDS: usize = 2000;
 
-/// Eight materials, each with its hit, a direction and three numbers.
-struct Mixed<'a> {
-    material: [NamedMaterial<'a>; 8],
-    hits: [Hit; 8],
-    wi: [Direction; 8],
-    xi: [[f32; 3]; 8],
-}
-
-impl<'a> Mixed<'a> {
-    fn new(materials: &[NamedMaterial<'a>], draws: &mut Draws) -> Self {
-        let material: [_; 8] = core::array::from_fn(|_| *draws.pick(materials));
-        let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
-        // Half of the directions where the lobes are, half anywhere.
-        let wi = core::array::from_fn(|lane| {
-            let any = draws.direction();
-            let drawn = material[lane].prepare(hits[lane]).sample(draws.xi3());
-            if lane % 2 == 0 {
-                drawn.map_or(any, |s| s.wi)
-            } else {
-                any
-            }
-        });
-        let xi = core::array::from_fn(|_| draws.xi3());
-        Self {
-            material,
-            hits,
-            wi,
-            xi,
-        }
+/// A property of eight materials of the subject at a time.
+fn mixed<'a>(
+    name: &'static str,
+    path: &'static str,
+    subject: &'a dyn ErasedSubject,
+    cases: usize,
+) -> Property<'a> {
+    Property {
+        name,
+        path,
+        subject,
+        which: Which::WithExtremes,
+        inputs: Inputs::Awkward,
+        tolerances: true,
+        cases,
     }
-
-    fn permuted(&self, order: [usize; 8]) -> Self {
-        Self {
-            material: order.map(|i| self.material[i]),
-            hits: order.map(|i| self.hits[i]),
-            wi: order.map(|i| self.wi[i]),
-            xi: order.map(|i| self.xi[i]),
-        }
-    }
-
-    fn prepare(&self, level: Level) -> Box<dyn ErasedBsdf8> {
-        NamedMaterial::prepare_packed(self.material, level, hits8(&self.hits))
-    }
-
-    fn at(&self, lane: usize, level: Level) -> String {
-        let Self {
-            material,
-            hits,
-            wi,
-            xi,
-        } = self;
-        format!(
-            "{} lane {lane} on {level} {:?} {:?} xi {:?}",
-            material[lane].name(),
-            hits[lane],
-            wi[lane],
-            xi[lane]
-        )
-    }
-}
-
-/// Eight materials of the subject at a time, `rounds` times.
-fn each_mixed(
-    subject: &dyn ErasedSubject,
-    seed: u64,
-    rounds: usize,
-    mut see: impl FnMut(&Mixed<'_>, &mut Draws, usize) -> Outcome,
-) -> Outcome {
-    let set = subject.set(Which::WithExtremes);
-    let materials: Vec<_> = set.iter().collect();
-    let mut draws = Draws(seed);
-    for round in 0..rounds {
-        see(&Mixed::new(&materials, &mut draws), &mut draws, round)?;
-    }
-    Ok(())
 }
 
 /// Every number of one lane of a packet of samples.
@@ -114,10 +60,20 @@ fn same_bits(claims: &Claims, level: Level) -> bool {
 pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "eight lanes give the results of one";
     let claims = subject.claims();
-    let mut worst = Worst::new(NAME, "value or density of a lane", claims.lanes);
-    each_mixed(subject, 0x1a4e, ROUNDS, |m, _, _| {
+    let quantity = ("value or density of a lane (`Claims::lanes`)", claims.lanes);
+    let everyday = Property {
+        inputs: Inputs::Everyday,
+        ..mixed(NAME, "lanes::lanes_equal_scalar", subject, ROUNDS)
+    };
+    // Bits are the same at the ends of every range, but there a rounding may discard a sample.
+    let awkward = Property {
+        inputs: Inputs::Awkward,
+        tolerances: false,
+        ..everyday
+    };
+    let test = |m: &Trial<'_>, [worst]: &mut [Worst; 1]| {
         for level in Level::available() {
-            let each = m.prepare(level);
+            let each = m.prepare(level, ORDER);
             let (wi, xi) = (packet(&m.wi), triples(&m.xi));
             let (evals, samples) = (
                 each.with_level(level).eval_pdf8(&wi),
@@ -125,7 +81,7 @@ pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
             );
             for lane in 0..8 {
                 let at = || m.at(lane, level);
-                let nearby = Nearby::new(m.material[lane], m.hits[lane], claims.near_field);
+                let nearby = Nearby::new(m.material(lane), m.hits[lane], claims.near_field);
                 let one = nearby.bsdf();
                 let eight = one.with_level(level).eval_pdf8(&wi);
                 let of_lane = each.lane(lane);
@@ -148,10 +104,10 @@ pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
                                 format!("bits of {got:?}, one lane {want:?}: {}", at()),
                             ));
                         }
-                    } else if cos_theta(m.wi[lane]) > 1e-3 {
+                    } else if m.tolerances[lane] && cos_theta(m.wi[lane]) > 1e-3 {
                         worst.see(nearby.error(got, want, m.wi[lane]), || {
                             format!("got {got:?}, one lane {want:?}: {}", at())
-                        })?;
+                        });
                     }
                 }
                 let want = one.sample(m.xi[lane]);
@@ -160,7 +116,8 @@ pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
                     let close = if same_bits(&claims, level) {
                         got == want
                     } else {
-                        sample_is_near(got, want, &nearby, m.xi[lane], claims.direction)
+                        !m.tolerances[lane]
+                            || sample_is_near(got, want, &nearby, m.xi[lane], claims.direction)
                     };
                     if !close {
                         return Err(Failure::new(
@@ -172,8 +129,9 @@ pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
             }
         }
         Ok(())
-    })?;
-    worst.report()
+    };
+    everyday.check([quantity], test)?;
+    awkward.check([quantity], test)
 }
 
 /// Permuting the lanes permutes the results, bit for bit: lanes do not mix, and none is special.
@@ -183,22 +141,19 @@ pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
 /// At the first lane that differs.
 pub fn lanes_permute(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "permuted lanes permute the results";
-    each_mixed(subject, 0x9e44, ROUNDS, |m, draws, _| {
-        let mut order = [0, 1, 2, 3, 4, 5, 6, 7];
-        for last in (1..8).rev() {
-            let all: Vec<usize> = (0..=last).collect();
-            order.swap(last, *draws.pick(&all));
-        }
-        let p = m.permuted(order);
+    let property = mixed(NAME, "lanes::lanes_permute", subject, ROUNDS);
+    property.check([], |m, []| {
+        let order = m.order;
+        let (wi, xi) = (order.map(|lane| m.wi[lane]), order.map(|lane| m.xi[lane]));
         for level in Level::available() {
-            let (g, h) = (m.prepare(level), p.prepare(level));
+            let (g, h) = (m.prepare(level, ORDER), m.prepare(level, order));
             let (a, b) = (
                 g.with_level(level).eval_pdf8(&packet(&m.wi)),
-                h.with_level(level).eval_pdf8(&packet(&p.wi)),
+                h.with_level(level).eval_pdf8(&packet(&wi)),
             );
             let (s, t) = (
                 g.with_level(level).sample8(&triples(&m.xi)),
-                h.with_level(level).sample8(&triples(&p.xi)),
+                h.with_level(level).sample8(&triples(&xi)),
             );
             for (to, from) in order.into_iter().enumerate() {
                 let same = eval_bits(a.lane(from)) == eval_bits(b.lane(to))
@@ -227,11 +182,12 @@ pub fn lanes_permute(subject: &dyn ErasedSubject) -> Outcome {
 /// At the first lane that differs.
 pub fn levels_agree(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "packed and shared materials, and levels that fuse alike, agree";
-    each_mixed(subject, 0x1e7e, ROUNDS / 2, |m, _, round| {
+    let property = mixed(NAME, "lanes::levels_agree", subject, ROUNDS / 2);
+    property.check([], |m, []| {
         let (wi, xi) = (packet(&m.wi), triples(&m.xi));
         let mut by_level: Vec<(Level, Box<dyn ErasedBsdf8>)> = Vec::new();
         for level in Level::available() {
-            let (material, hits) = (m.material[round % 8], hits8(&[m.hits[round % 8]; 8]));
+            let (material, hits) = (m.material(0), hits8(&[m.hits[0]; 8]));
             let packed = NamedMaterial::prepare_packed([material; 8], level, hits);
             let shared = material.prepare8(level, hits);
             let lane = packed.lane(3);
@@ -256,7 +212,7 @@ pub fn levels_agree(subject: &dyn ErasedSubject) -> Outcome {
                     return Err(Failure::new(NAME, message));
                 }
             }
-            by_level.push((level, m.prepare(level)));
+            by_level.push((level, m.prepare(level, ORDER)));
         }
         for pair in by_level
             .windows(2)
@@ -297,9 +253,14 @@ pub fn lobes_and_albedo_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "lobes and albedo of eight lanes are those of one";
     let claims = subject.claims();
     let level = Level::detect();
-    let mut worst = Worst::new(NAME, "albedo of a lane", claims.albedo);
-    each_mixed(subject, 0x10be, ROUNDS / 4, |m, _, _| {
-        let each = m.prepare(level);
+    let path = "lanes::lobes_and_albedo_equal_scalar";
+    let quantity = ("albedo of a lane (`Claims::albedo`)", claims.albedo);
+    let property = Property {
+        inputs: Inputs::Everyday,
+        ..mixed(NAME, path, subject, ROUNDS / 4)
+    };
+    property.check([quantity], |m, [worst]| {
+        let each = m.prepare(level, ORDER);
         let wi = packet(&m.wi);
         let (lobes, albedo) = (each.lobes8(&wi), each.with_level(level).albedo8());
         for lane in 0..8 {
@@ -326,25 +287,26 @@ pub fn lobes_and_albedo_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
                     );
                     // A lobe that lies off the sphere returns next to nothing, with the digits of its tail.
                     let floor = 1e-4 * f64::from(one_color[c]).max(1e-20);
-                    worst.see(relative(got, want, floor), || {
-                        format!("{lobe:?} {got}, one lane {want}: {}", at())
-                    })?;
+                    if m.tolerances[lane] {
+                        worst.see(relative(got, want, floor), || {
+                            format!("{} {got}, one lane {want}: {}", subject.lobe(lobe), at())
+                        });
+                    }
                 }
             }
             if !claims.near_field {
                 let [a, b] =
-                    [-0.9, 0.4].map(|h| m.material[lane].prepare(Hit { h, ..m.hits[lane] }));
+                    [-0.9, 0.4].map(|h| m.material(lane).prepare(Hit { h, ..m.hits[lane] }));
                 let same_eval =
                     eval_bits(a.eval_pdf(m.wi[lane])) == eval_bits(b.eval_pdf(m.wi[lane]));
                 if !same_eval || a.sample(m.xi[lane]) != b.sample(m.xi[lane]) {
                     return Err(Failure::new(
                         NAME,
-                        format!("h changes the results, but is not claimed to: {}", at()),
+                        format!("h changes the results, but is not claimed to (`Claims::near_field`): {}", at()),
                     ));
                 }
             }
         }
         Ok(())
-    })?;
-    worst.report()
+    })
 }

@@ -55,9 +55,55 @@
 //! | `eval_is_reciprocal` | S with its directions exchanged, if claimed |
 //! | `agrees_with_reference` | agreement with the reference in double precision, if there is one |
 //!
-//! All run on every level that the CPU has. Inputs are the same in every run. Each property is also a function that returns
-//! an [`Outcome`], whose [`Failure`] names material, directions, numbers, lane and level; `cargo test -- --nocapture` prints
-//! the worst case of each.
+//! All run on every level that the CPU has. Each property is also a function that returns an
+//! [`Outcome`]; `cargo test -- --nocapture` prints the largest error of each beside the claim that
+//! states its tolerance, and the properties of claims that the subject does not make.
+//!
+//! # Failures
+//!
+//! Properties that are not statistical draw packets of eight materials, hits, directions and
+//! numbers from strategies of [`proptest`]. Properties without a tolerance draw the ends of ranges, grazing
+//! hits and the axes more often than chance, and half of their materials from
+//! [`Subject::any_material`], where the subject has it. A failure reports the worst case, and its
+//! [`case`](Failure::case) is the smallest case that fails, as a block of code. Pasted into a test,
+//! it fails again:
+//!
+//! ```
+//! # use hairis::{Gaussian, HairParams, Published};
+//! # use hairis_conformance::{Claims, Materials, Subject};
+//! # struct GaussianHair;
+//! # impl Subject for GaussianHair {
+//! #     type Model = Published<Gaussian>;
+//! #     fn model(&self) -> Self::Model {
+//! #         Published(Gaussian)
+//! #     }
+//! #     fn materials(&self) -> Materials<Self> {
+//! #         vec![("brown", HairParams::brown()), ("white", HairParams::white())]
+//! #     }
+//! # }
+//! let subject = GaussianHair;
+//! let outcome = {
+//!     use glam::Vec3;
+//!     use hairis::Hit;
+//!     use hairis_conformance::{Case, Replay, Row, totality};
+//!     let case = Case::new(|| Row {
+//!         material: subject.materials().swap_remove(0).1,
+//!         hit: Hit::new(Vec3::new(0.0, 1.0, 0.0), 0.0),
+//!         wi: Vec3::new(1.0, 0.0, 0.0),
+//!         xi: [0.0, 0.0, 0.0],
+//!         tolerances: true,
+//!     });
+//!     totality::results_are_finite(&Replay::pasted(&subject, case))
+//! };
+//! assert!(outcome.is_ok());
+//! ```
+//!
+//! The tests of [`conformance!`] also keep the seed of the case, in the file
+//! `proptest-regressions/conformance.txt` of the package under test, and run it before all others.
+//! Add that file to the repository.
+//!
+//! Cases are the same in every run. The environment variable `HAIRIS_SEED`, a whole number, draws
+//! others; `HAIRIS_CASES=10` draws ten times as many.
 //!
 //! # Limits
 //!
@@ -65,7 +111,9 @@
 //! [`Subject::edges`] names it. Relative accuracy within 1e-3 rad of the axis is left to the model's own tests.
 
 pub mod bounds;
+mod cases;
 pub mod chi_square;
+pub mod comparison;
 pub mod environment;
 mod erased;
 mod failure;
@@ -90,14 +138,17 @@ pub mod resampling;
 pub mod sampling;
 pub mod slices;
 pub mod statistics;
+pub mod strategies;
 mod subject;
 pub mod totality;
 
+pub use cases::{Case, Replay, Row};
 pub use erased::ErasedSubject;
 pub use erased::hits::HitsSubject;
 pub use failure::{Failure, Outcome};
 pub use hairis_reference::{LobeAt, Reference, ReferenceSample};
-pub use subject::{Claims, Expected, Materials, ParamsOf, Subject, Tolerance};
+pub use proptest;
+pub use subject::{AnyMaterial, Claims, Expected, Materials, ParamsOf, Subject, Tolerance};
 
 /// Declares a module with a `#[test]` for each property of a [`Subject`].
 ///
@@ -145,7 +196,9 @@ macro_rules! conformance {
             $(
                 #[test]
                 fn $property() {
-                    if let Err(failure) = $crate::$module::$property(&$subject) {
+                    let (subject, package) = (&$subject, env!("CARGO_MANIFEST_DIR"));
+                    let subject = $crate::Replay::kept(subject, package, module_path!());
+                    if let Err(failure) = $crate::$module::$property(&subject) {
                         panic!("{failure}");
                     }
                 }

@@ -1,45 +1,20 @@
 //! NaN and infinite inputs give nothing: no value, no density, and samples that are discarded.
 
-use crate::erased::{
-    COLUMNS, Direction, ErasedBsdf, ErasedBsdf8, ErasedSubject, NamedMaterial, Which,
-};
+use crate::cases::Property;
+use crate::cases::inputs::Inputs;
+use crate::erased::{COLUMNS, Direction, ErasedBsdf, ErasedBsdf8, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome};
-use crate::probe::{Draws, hits8, packet, triples};
+use crate::probe::{hits, hits8, packet, sobol, triples};
 use hairis::simd::{Level, f32x8};
 use hairis::{Eval, Hit, Sample8};
 
 const NAME: &str = "inputs that are no numbers are black";
 
-/// Inputs per material.
-const ROUNDS: usize = 200;
+/// Packets of eight materials.
+const CASES: usize = 1500;
 
 /// Rows of a slice: whole packets of every level, and some more.
 const ROWS: usize = 71;
-
-/// NaN or an infinity.
-fn odd(draws: &mut Draws) -> f32 {
-    *draws.pick(&[f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY])
-}
-
-/// A vector of which one component at least is no number; the others are of a direction, tiny, huge or 0.
-fn vector(draws: &mut Draws) -> Direction {
-    let Direction { x, y, z } = draws.direction();
-    let by = *draws.pick(&[1.0, 0.0, 1e-35, 1e37]);
-    let mut v = [x * by, y * by, z * by];
-    for _ in 0..*draws.pick(&[1, 1, 1, 2, 3]) {
-        v[*draws.pick(&[0, 1, 2])] = odd(draws);
-    }
-    Direction::new(v[0], v[1], v[2])
-}
-
-/// Three numbers of which one at least is NaN.
-fn numbers(draws: &mut Draws) -> [f32; 3] {
-    let mut xi = draws.xi3();
-    for _ in 0..*draws.pick(&[1, 1, 1, 2, 3]) {
-        xi[*draws.pick(&[0, 1, 2])] = f32::NAN;
-    }
-    xi
-}
 
 fn black(e: Eval) -> bool {
     e.value == [0.0; 3] && e.pdf == 0.0
@@ -153,50 +128,51 @@ fn at_each(
 ///
 /// At the first input where something is not 0, or a sample is kept.
 pub fn inputs_that_are_no_numbers_are_black(subject: &dyn ErasedSubject) -> Outcome {
-    let mut draws = Draws(0x7a7a);
-    for material in subject.set(Which::WithExtremes).iter() {
-        let name = material.name();
-        for _ in 0..ROUNDS {
-            let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
-            let odd_hits = hits.map(|hit| Hit {
-                wo: vector(&mut draws).into(),
-                ..hit
-            });
-            let wi: [Direction; 8] = core::array::from_fn(|_| draws.direction());
-            let odd_wi: [Direction; 8] = core::array::from_fn(|_| vector(&mut draws));
-            let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
-            let odd_xi: [[f32; 3]; 8] = core::array::from_fn(|_| numbers(&mut draws));
-            let seen = material.prepare(hits[0]);
-            let unseen = material.prepare(odd_hits[0]);
-            let mut faults = vec![
-                at_one(&*unseen, Some(wi[0]), Some(xi[0])),
-                at_one(&*unseen, Some(odd_wi[0]), Some(odd_xi[0])),
-                at_one(&*seen, Some(odd_wi[0]), Some(odd_xi[0])),
-            ];
-            let albedo = unseen.albedo();
-            if albedo.0 != [[0.0; 3]; 4] {
-                faults.push(Some(format!("albedo {albedo:?}")));
-            }
-            for level in Level::available() {
-                let unseen = NamedMaterial::prepare_packed([material; 8], level, hits8(&odd_hits));
-                faults.push(at_each(&*unseen, level, Some(wi), Some(xi)));
-                let seen = material.prepare8(level, hits8(&hits));
-                faults.push(at_each(&*seen, level, Some(odd_wi), Some(odd_xi)));
-                let albedo = unseen.with_level(level).albedo8();
-                if albedo
-                    .0
-                    .as_flattened()
-                    .iter()
-                    .any(|x| x.to_array() != [0.0; 8])
-                {
-                    faults.push(Some(format!("albedos {albedo:?}, {level}")));
-                }
-            }
-            if let Some(fault) = faults.into_iter().flatten().next() {
-                let inputs = format!("{odd_hits:?} {hits:?} {odd_wi:?} {wi:?} {odd_xi:?} {xi:?}");
-                return Err(Failure::new(NAME, format!("{name}: {fault}, of {inputs}")));
+    // Sound inputs beside those that are not.
+    let sound: [Hit; 8] = core::array::from_fn(|lane| hits()[lane % hits().len()]);
+    let (wi, xi) = (
+        sound.map(|hit| hit.wo.into()),
+        [1, 2, 3, 4, 5, 6, 7, 8].map(sobol),
+    );
+    let property = Property {
+        name: NAME,
+        path: "not_numbers::inputs_that_are_no_numbers_are_black",
+        subject,
+        which: Which::WithExtremes,
+        inputs: Inputs::NotNumbers,
+        tolerances: true,
+        cases: CASES,
+    };
+    property.check([], |trial, []| {
+        let (odd_hits, odd_wi, odd_xi) = (trial.hits, trial.wi, trial.xi);
+        let material = trial.material(0);
+        let (seen, unseen) = (material.prepare(sound[0]), material.prepare(odd_hits[0]));
+        let mut faults = vec![
+            at_one(&*unseen, Some(wi[0]), Some(xi[0])),
+            at_one(&*unseen, Some(odd_wi[0]), Some(odd_xi[0])),
+            at_one(&*seen, Some(odd_wi[0]), Some(odd_xi[0])),
+        ];
+        let albedo = unseen.albedo();
+        if albedo.0 != [[0.0; 3]; 4] {
+            faults.push(Some(format!("albedo {albedo:?}")));
+        }
+        for level in Level::available() {
+            let unseen = trial.prepare(level, [0, 1, 2, 3, 4, 5, 6, 7]);
+            faults.push(at_each(&*unseen, level, Some(wi), Some(xi)));
+            let seen = material.prepare8(level, hits8(&sound));
+            faults.push(at_each(&*seen, level, Some(odd_wi), Some(odd_xi)));
+            let albedo = unseen.with_level(level).albedo8();
+            let albedo = albedo.0.as_flattened();
+            if albedo.iter().any(|x| x.to_array() != [0.0; 8]) {
+                faults.push(Some(format!("albedos {albedo:?}, {level}")));
             }
         }
-    }
-    Ok(())
+        faults.into_iter().flatten().next().map_or(Ok(()), |fault| {
+            let rows = [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| trial.at(lane, "any level"));
+            Err(Failure::new(
+                NAME,
+                format!("{fault}, of {}", rows.join("; ")),
+            ))
+        })
+    })
 }

@@ -30,7 +30,7 @@ pub struct Draws(pub u64);
 /// # Panics
 ///
 /// If it is no whole number of 64 bits.
-fn run_seed() -> u64 {
+pub(crate) fn run_seed() -> u64 {
     static SEED: OnceLock<u64> = OnceLock::new();
     *SEED.get_or_init(|| match std::env::var("HAIRIS_SEED") {
         Ok(text) => text
@@ -43,8 +43,17 @@ fn run_seed() -> u64 {
 impl Draws {
     /// 64 random bits.
     pub fn bits(&mut self) -> u64 {
+        self.mixed(run_seed())
+    }
+
+    /// 64 random bits, the same in every run.
+    pub(crate) fn unseeded(&mut self) -> u64 {
+        self.mixed(0)
+    }
+
+    fn mixed(&mut self, run_seed: u64) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0 ^ run_seed();
+        let mut z = self.0 ^ run_seed;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)
@@ -115,11 +124,6 @@ pub(crate) fn angles(direction: [f64; 3]) -> [f64; 2] {
 pub(crate) fn distance(a: Direction, b: Direction) -> f64 {
     let ([a0, a1, a2], [b0, b1, b2]) = (double(a), double(b));
     ((a0 - b0).powi(2) + (a1 - b1).powi(2) + (a2 - b2).powi(2)).sqrt()
-}
-
-/// Error of `got` relative to `want`, or to `floor` where both are smaller.
-pub(crate) fn relative(got: f64, want: f64, floor: f64) -> f64 {
-    (got - want).abs() / want.abs().max(floor)
 }
 
 /// Directions that a direction may be taken for once its components and its inclination are rounded: moved by `by` along each

@@ -1,18 +1,21 @@
 //! The model agrees with its reference in double precision.
 
+use crate::cases::Property;
+use crate::cases::inputs::Inputs;
+use crate::comparison::relative;
 use crate::erased::{Direction, ErasedSubject, Which};
-use crate::failure::{Failure, Outcome, Worst};
-use crate::probe::{Draws, cos_theta, double, hits_and, packet, relative, rounded, triples};
+use crate::failure::{Failure, Outcome, Worst, not_claimed};
+use crate::probe::{cos_theta, double, packet, rounded, triples};
 use crate::subject::{Expected, Tolerance};
+use core::cell::Cell;
 use hairis::simd::Level;
 use hairis::{Eval, Lobe, Sample};
 use hairis_reference::{Reference, ReferenceSample};
 
 const NAME: &str = "the model agrees with its reference";
 
-/// Hits per material, and packets per hit.
-const HITS: usize = 40;
-const PACKETS: usize = 4;
+/// Packets of eight hits.
+const CASES: usize = 1600;
 
 /// Error of `got`, less what moving the direction by the tolerated rounding changes, over the tolerance.
 fn excess(
@@ -41,84 +44,89 @@ fn excess(
 ///
 /// At the first result that differs.
 pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
-    let mut draws = Draws(0x4ef5);
-    let mut worst = ["S", "density", "lobe"].map(|what| Worst::new(NAME, what, 1.0));
-    let mut compared = 0_usize;
-    for material in subject.set(Which::WithRandom).iter() {
-        let name = material.name();
-        for hit in hits_and(HITS, &mut draws) {
+    let compared = Cell::new(0_usize);
+    let property = Property {
+        name: NAME,
+        path: "reference::agrees_with_reference",
+        subject,
+        which: Which::WithRandom,
+        inputs: Inputs::Everyday,
+        tolerances: true,
+        cases: CASES,
+    };
+    let quantities = ["S", "density", "lobe"].map(|what| (what, 1.0));
+    property.check(quantities, |trial, worst| {
+        let levels = Level::available().map(|level| {
+            let each = trial.prepare(level, [0, 1, 2, 3, 4, 5, 6, 7]);
+            let (e, s) = (
+                each.with_level(level).eval_pdf8(&packet(&trial.wi)),
+                each.with_level(level).sample8(&triples(&trial.xi)),
+            );
+            (e, s, level.name())
+        });
+        let levels: Vec<_> = levels.collect();
+        for lane in (0..8).filter(|lane| cos_theta(trial.wi[*lane]) > 1e-3) {
+            let (hit, wi, xi) = (trial.hits[lane], trial.wi[lane], trial.xi[lane]);
             let Some(Expected {
                 reference,
                 tolerance,
-            }) = material.reference(&hit)
+            }) = trial.material(lane).reference(&hit)
             else {
                 return Ok(());
             };
-            let bsdf = material.prepare(hit);
-            for n in 0..PACKETS {
-                let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
-                let wi: [Direction; 8] = core::array::from_fn(|lane| {
-                    let any = draws.direction();
-                    let drawn = bsdf.sample(draws.xi3()).map_or(any, |s| s.wi);
-                    if (lane + n) % 2 == 0 { any } else { drawn }
-                });
-                let levels = Level::available().map(|level| {
-                    let (e, s) = (
-                        bsdf.with_level(level).eval_pdf8(&packet(&wi)),
-                        bsdf.with_level(level).sample8(&triples(&xi)),
-                    );
-                    (e, s, level.name())
-                });
-                let levels: Vec<_> = levels.collect();
-                for lane in (0..8).filter(|lane| cos_theta(wi[*lane]) > 1e-3) {
-                    let lanes = levels
-                        .iter()
-                        .map(|(e, s, level)| (e.lane(lane), s.lane(lane), *level));
-                    let one = (bsdf.eval_pdf(wi[lane]), bsdf.sample(xi[lane]), "one lane");
-                    for (e, s, level) in lanes.chain([one]) {
-                        let at = || {
-                            format!("{name} {hit:?} {:?} xi {:?} on {level}", wi[lane], xi[lane])
-                        };
-                        see_eval(&mut worst, &*reference, e, wi[lane], &tolerance, &at)?;
-                        compare_sample(&*reference, s, xi[lane], &tolerance, &at)?;
-                        compared += 1;
-                    }
-                    let Some(bound) = tolerance.lobes else {
-                        continue;
-                    };
-                    let values = reference.lobe_values(double(wi[lane])).0;
-                    if values.into_iter().any(|value| value < tolerance.lobe_floor) {
-                        continue;
-                    }
-                    let lobes = bsdf.lobes(wi[lane]);
-                    for lobe in Lobe::ALL {
-                        let (value, pdf) = (lobes[lobe].value, lobes[lobe].pdf);
-                        let value = excess(
-                            f64::from(value),
-                            |d| reference.lobe_values(d)[lobe],
-                            wi[lane],
-                            bound,
-                            &tolerance,
-                        );
-                        let pdf = excess(
-                            f64::from(pdf),
-                            |d| reference.lobe_pdfs(d)[lobe],
-                            wi[lane],
-                            bound,
-                            &tolerance,
-                        );
-                        for error in [value, pdf] {
-                            worst[2].see(error, || {
-                                format!("{lobe:?} {lobes:?}: {name} {hit:?} {:?}", wi[lane])
-                            })?;
-                        }
-                    }
+            let bsdf = trial.material(lane).prepare(hit);
+            let lanes = levels
+                .iter()
+                .map(|(e, s, level)| (e.lane(lane), s.lane(lane), *level));
+            let one = (bsdf.eval_pdf(wi), bsdf.sample(xi), "one lane");
+            for (e, s, level) in lanes.chain([one]) {
+                let at = || trial.at(lane, level);
+                see_eval(worst, &*reference, e, wi, &tolerance, &at);
+                compare_sample(&*reference, s, xi, &tolerance, &at)?;
+                compared.set(compared.get() + 1);
+            }
+            let Some(bound) = tolerance.lobes else {
+                continue;
+            };
+            let values = reference.lobe_values(double(wi)).0;
+            if values.into_iter().any(|value| value < tolerance.lobe_floor) {
+                continue;
+            }
+            let lobes = bsdf.lobes(wi);
+            for lobe in Lobe::ALL {
+                let (value, pdf) = (lobes[lobe].value, lobes[lobe].pdf);
+                let value = excess(
+                    f64::from(value),
+                    |d| reference.lobe_values(d)[lobe],
+                    wi,
+                    bound,
+                    &tolerance,
+                );
+                let pdf = excess(
+                    f64::from(pdf),
+                    |d| reference.lobe_pdfs(d)[lobe],
+                    wi,
+                    bound,
+                    &tolerance,
+                );
+                for error in [value, pdf] {
+                    worst[2].see(error, || {
+                        let lobe = subject.lobe(lobe);
+                        format!("{lobe} {lobes:?}: {}", trial.at(lane, "one lane"))
+                    });
                 }
             }
         }
+        Ok(())
+    })?;
+    if compared.get() == 0 {
+        return not_claimed(NAME, "Subject::reference");
     }
-    println!("{NAME}: {compared} results, errors over their tolerance:");
-    worst.into_iter().try_for_each(Worst::report)
+    println!(
+        "{NAME}: {} results, errors over their tolerance",
+        compared.get()
+    );
+    Ok(())
 }
 
 fn see_eval(
@@ -128,7 +136,7 @@ fn see_eval(
     wi: Direction,
     tolerance: &Tolerance,
     at: &impl Fn() -> String,
-) -> Outcome {
+) {
     let want = || {
         format!(
             "{got:?}, reference {:?} {}: {}",
@@ -147,7 +155,7 @@ fn see_eval(
                 tolerance,
             ),
             want,
-        )?;
+        );
     }
     pdf.see(
         excess(
@@ -158,7 +166,7 @@ fn see_eval(
             tolerance,
         ),
         want,
-    )
+    );
 }
 
 /// How far the numbers of a sample, and with them the shares of its lobes, may be off: a few roundings.

@@ -1,8 +1,10 @@
 //! The model under test, and its claims.
 
+use core::fmt;
 use hairis::model::Model;
 use hairis::{Hit, LobeMask};
 use hairis_reference::Reference;
+use proptest::prelude::*;
 
 /// Parameters of the subject's model.
 pub type ParamsOf<S> = <<S as Subject>::Model as Model>::Params;
@@ -36,6 +38,15 @@ pub trait Subject: Sync {
         Vec::new()
     }
 
+    /// Any legal material, with the ends of ranges more often than chance: see
+    /// [`strategies`](crate::strategies).
+    ///
+    /// Properties without a tolerance draw half of their materials from it. Properties with a
+    /// tolerance, which is stated for everyday materials, do not.
+    fn any_material(&self) -> Option<BoxedStrategy<AnyMaterial<ParamsOf<Self>>>> {
+        None
+    }
+
     /// Claims of the model, and its tolerances.
     fn claims(&self) -> Claims {
         Claims::default()
@@ -65,6 +76,35 @@ pub trait Subject: Sync {
     /// Further materials to compare with the [`reference`](Self::reference), for instance random ones.
     fn random_materials(&self) -> Vec<ParamsOf<Self>> {
         Vec::new()
+    }
+}
+
+/// Parameters of a material that a strategy has drawn, and the code that makes them.
+#[derive(Clone)]
+pub struct AnyMaterial<P> {
+    pub(crate) params: P,
+    pub(crate) code: String,
+}
+
+impl<P> AnyMaterial<P> {
+    /// Parameters and their code.
+    #[must_use]
+    pub const fn new(params: P, code: String) -> Self {
+        Self { params, code }
+    }
+}
+
+impl<P: fmt::Debug> From<P> for AnyMaterial<P> {
+    /// Parameters whose `Debug` form is code, as that of a structure with public fields is.
+    fn from(params: P) -> Self {
+        let code = format!("{params:?}");
+        Self { params, code }
+    }
+}
+
+impl<P> fmt::Debug for AnyMaterial<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.code)
     }
 }
 

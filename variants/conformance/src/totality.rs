@@ -1,90 +1,18 @@
 //! Every finite input gives finite results that are not negative.
 
-use crate::erased::{Direction, ErasedSubject, NamedMaterial, Which};
+use crate::cases::inputs::Inputs;
+use crate::cases::{Property, Trial};
+use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Failure, Outcome};
-use crate::probe::{Draws, LAST, direction, hits8, masks, packet, triples};
+use crate::probe::{packet, triples};
 use hairis::model::LobeEval;
 use hairis::simd::Level;
-use hairis::{Eval, Hit, Lobe, LobeMask, Sample8};
+use hairis::{Eval, Lobe, LobeMask, Sample8};
 
 const NAME: &str = "results are finite and not negative";
 
-/// Packets per material.
-const ROUNDS: usize = 2000;
-
-/// Components that arithmetic trips over.
-const COMPONENTS: [f32; 22] = [
-    0.0,
-    -0.0,
-    1e-45,
-    -1e-40,
-    f32::MIN_POSITIVE,
-    -1e-30,
-    1e-20,
-    -1e-19,
-    1e-10,
-    9.9e-6,
-    -1.01e-5,
-    1e-3,
-    0.6,
-    -0.8,
-    LAST,
-    1.0,
-    -1.0,
-    1.0 + f32::EPSILON,
-    2.0,
-    -1e19,
-    1e30,
-    f32::MAX,
-];
-
-/// Uniform numbers at the ends and the middle of their range; 1 is beyond it, and what rounding makes of others.
-const NUMBERS: [f32; 12] = [
-    0.0,
-    1e-45,
-    1e-30,
-    f32::EPSILON / 2.0,
-    1e-4,
-    0.25,
-    0.5 - f32::EPSILON / 4.0,
-    0.5,
-    0.5 + f32::EPSILON / 2.0,
-    0.9999,
-    LAST,
-    1.0,
-];
-
-/// A vector of odd components, or a direction next to the axis, or any direction.
-fn vector(draws: &mut Draws) -> Direction {
-    match draws.pick(&[0, 0, 1, 2, 3]) {
-        0 => Direction::new(
-            *draws.pick(&COMPONENTS),
-            *draws.pick(&COMPONENTS),
-            *draws.pick(&COMPONENTS),
-        ),
-        1 => {
-            let off = *draws.pick(&[1e-38, 1e-20, 1e-12, 1e-7, 0.99e-5, 1.01e-5, 1e-4_f32]);
-            Direction::new(
-                *draws.pick(&[1.0, -1.0, LAST]),
-                off * *draws.pick(&[1.0, -1.0]),
-                off * *draws.pick(&[0.0, 1.0]),
-            )
-        }
-        2 => direction(
-            draws.between(-1.6, 1.6),
-            *draws.pick(&[0.0, 0.5, 1.0]) * core::f64::consts::PI,
-        ),
-        _ => draws.direction(),
-    }
-}
-
-fn number(draws: &mut Draws) -> f32 {
-    if *draws.pick(&[true, false]) {
-        *draws.pick(&NUMBERS)
-    } else {
-        draws.xi()
-    }
-}
+/// Packets of eight materials.
+const CASES: usize = 12_000;
 
 /// Whether a number is what values, densities and weights have to be.
 fn sound(x: f32) -> bool {
@@ -153,137 +81,120 @@ fn fault(
 ///
 /// At the first input where something is not.
 pub fn results_are_finite(subject: &dyn ErasedSubject) -> Outcome {
-    sweep(subject, ROUNDS, vector)
+    let property = Property {
+        name: NAME,
+        path: "totality::results_are_finite",
+        subject,
+        which: Which::WithExtremes,
+        inputs: Inputs::Finite,
+        tolerances: true,
+        cases: CASES,
+    };
+    property.check([], |trial, []| is_sound(subject, trial))
 }
 
-/// Checks so many packets per material, of these directions.
-pub(crate) fn sweep(
-    subject: &dyn ErasedSubject,
-    rounds: usize,
-    vector: fn(&mut Draws) -> Direction,
-) -> Outcome {
-    let mut draws = Draws(0x0707);
-    let masks = masks();
-    for material in subject.set(Which::WithExtremes).iter() {
-        let name = material.name();
-        for round in 0..rounds {
-            let hits: [Hit; 8] = core::array::from_fn(|_| {
-                let h = *draws.pick(&[0.0, -0.0, 1.0, -1.0, 1e-40, 0.3, LAST, -1.5, 1e30]);
-                Hit {
-                    wo: vector(&mut draws).into(),
-                    h,
-                }
-            });
-            let wi: [Direction; 8] = core::array::from_fn(|_| vector(&mut draws));
-            let xi: [[f32; 3]; 8] =
-                core::array::from_fn(|_| core::array::from_fn(|_| number(&mut draws)));
-            let mask = if round % 2 == 0 {
-                LobeMask::ALL
-            } else {
-                *draws.pick(&masks)
-            };
-            let fail = |what: &str, lane: usize, how: &str, got: String| {
-                let (hit, wi, xi) = (hits[lane], wi[lane], xi[lane]);
-                let message = format!(
-                    "{what}: {name} {mask:?} lane {lane} {how} {hit:?} {wi:?} xi {xi:?}: {got}"
-                );
-                Err(Failure::new(NAME, message))
-            };
-            let (wi8, xi8) = (packet(&wi), triples(&xi));
-            for level in Level::available() {
-                let each = NamedMaterial::prepare_packed([material; 8], level, hits8(&hits));
-                let each = each.with_lobes(mask);
-                let one = material.prepare(hits[0]).with_lobes(mask);
-                let evals = [
-                    each.with_level(level).eval_pdf8(&wi8),
-                    one.with_level(level).eval_pdf8(&wi8),
-                ];
-                let samples = [
-                    each.with_level(level).sample8(&xi8),
-                    one.with_level(level).sample8(&xi8),
-                ];
-                for lane in 0..8 {
-                    for (e, of) in evals.iter().zip(["eight hits", "one hit (that of lane 0)"]) {
-                        if !sound_eval(&e.lane(lane)) {
-                            return fail(
-                                "a value or density",
-                                lane,
-                                &format!("{of} {level}"),
-                                format!("{:?}", e.lane(lane)),
-                            );
-                        }
-                    }
-                    for (s, of) in samples
-                        .iter()
-                        .zip(["eight hits", "one hit (that of lane 0)"])
-                    {
-                        // Beyond the range of uniform numbers any lobe may be drawn.
-                        let within = xi[lane].iter().all(|xi| *xi < 1.0);
-                        if let Some(why) =
-                            fault(s, lane, if within { mask } else { LobeMask::ALL }, subject)
-                        {
-                            return fail(why, lane, &format!("{of} {level}"), format!("{s:?}"));
-                        }
-                    }
-                }
-            }
-            let lane = round % 8;
-            let bsdf = material.prepare(hits[lane]).with_lobes(mask);
-            let e = bsdf.eval_pdf(wi[lane]);
-            if !sound_eval(&e) || (mask == LobeMask::NONE && (e.pdf != 0.0 || e.value != [0.0; 3]))
-            {
-                return fail("a value or density", lane, "scalar", format!("{e:?}"));
-            }
-            let lobes = bsdf.lobes(wi[lane]);
-            let named = subject.lobe_count();
-            for lobe in Lobe::ALL {
-                let beyond =
-                    lobe.index() >= named && (lobes[lobe].value != 0.0 || lobes[lobe].pdf != 0.0);
-                if !sound_lobe(&lobes[lobe]) || beyond {
+/// Whether every result of a case is finite and not negative.
+pub(crate) fn is_sound(subject: &dyn ErasedSubject, trial: &Trial<'_>) -> Outcome {
+    let (hits, wi, xi, mask) = (trial.hits, trial.wi, trial.xi, trial.lobes);
+    let fail = |what: &str, lane: usize, how: &str, got: String| {
+        let message = format!(
+            "{what}: {}, {}: {got}",
+            subject.lobes(mask),
+            trial.at(lane, how)
+        );
+        Err(Failure::new(NAME, message))
+    };
+    let (wi8, xi8) = (packet(&wi), triples(&xi));
+    for level in Level::available() {
+        let each = trial
+            .prepare(level, [0, 1, 2, 3, 4, 5, 6, 7])
+            .with_lobes(mask);
+        let one = trial.material(0).prepare(hits[0]).with_lobes(mask);
+        let evals = [
+            each.with_level(level).eval_pdf8(&wi8),
+            one.with_level(level).eval_pdf8(&wi8),
+        ];
+        let samples = [
+            each.with_level(level).sample8(&xi8),
+            one.with_level(level).sample8(&xi8),
+        ];
+        for lane in 0..8 {
+            for (e, of) in evals.iter().zip(["eight hits", "one hit (that of lane 0)"]) {
+                if !sound_eval(&e.lane(lane)) {
                     return fail(
-                        "a lobe's value, color or density",
+                        "a value or density",
                         lane,
-                        "scalar",
-                        format!("{lobes:?}"),
+                        &format!("{of} {level}"),
+                        format!("{:?}", e.lane(lane)),
                     );
                 }
             }
-            // One lane repeats, bit for bit: there is no state.
-            let sample = bsdf.sample(xi[lane]);
-            if let Some(s) = sample {
-                let numbers = [s.value, s.weight].concat();
-                let length = f64::from(s.wi.x)
-                    .hypot(f64::from(s.wi.y))
-                    .hypot(f64::from(s.wi.z));
-                let unit = (length - 1.0).abs() <= 1e-5;
-                let masked = !mask.contains(s.lobe) && xi[lane].iter().all(|xi| *xi < 1.0);
-                if !numbers.into_iter().all(sound)
-                    || !sound(s.pdf)
-                    || s.pdf == 0.0
-                    || !unit
-                    || masked
+            for (s, of) in samples
+                .iter()
+                .zip(["eight hits", "one hit (that of lane 0)"])
+            {
+                // Beyond the range of uniform numbers any lobe may be drawn.
+                let within = xi[lane].iter().all(|xi| *xi < 1.0);
+                if let Some(why) =
+                    fault(s, lane, if within { mask } else { LobeMask::ALL }, subject)
                 {
-                    return fail("a sample", lane, "scalar", format!("{s:?}"));
+                    return fail(why, lane, &format!("{of} {level}"), format!("{s:?}"));
                 }
             }
-            if sample != bsdf.sample(xi[lane]) {
+        }
+    }
+    for lane in 0..8 {
+        let bsdf = trial.material(lane).prepare(hits[lane]).with_lobes(mask);
+        let e = bsdf.eval_pdf(wi[lane]);
+        if !sound_eval(&e) || (mask == LobeMask::NONE && (e.pdf != 0.0 || e.value != [0.0; 3])) {
+            return fail("a value or density", lane, "scalar", format!("{e:?}"));
+        }
+        let lobes = bsdf.lobes(wi[lane]);
+        let named = subject.lobe_count();
+        for lobe in Lobe::ALL {
+            let beyond =
+                lobe.index() >= named && (lobes[lobe].value != 0.0 || lobes[lobe].pdf != 0.0);
+            if !sound_lobe(&lobes[lobe]) || beyond {
                 return fail(
-                    "a sample differs when it is drawn again",
+                    "a lobe's value, color or density",
                     lane,
                     "scalar",
-                    format!("{sample:?}"),
+                    format!("{lobes:?}"),
                 );
             }
-            if round % 16 == 0 {
-                for (bsdf, what) in [
-                    (&bsdf, "an albedo"),
-                    (&bsdf.conserving(), "an albedo of conserving hair"),
-                ] {
-                    let albedo = bsdf.albedo().0;
-                    if !albedo.as_flattened().iter().all(|x| sound(*x)) {
-                        return fail(what, lane, "scalar", format!("{albedo:?}"));
-                    }
-                }
+        }
+        // One lane repeats, bit for bit: there is no state.
+        let sample = bsdf.sample(xi[lane]);
+        if let Some(s) = sample {
+            let numbers = [s.value, s.weight].concat();
+            let length = f64::from(s.wi.x)
+                .hypot(f64::from(s.wi.y))
+                .hypot(f64::from(s.wi.z));
+            let unit = (length - 1.0).abs() <= 1e-5;
+            let masked = !mask.contains(s.lobe) && xi[lane].iter().all(|xi| *xi < 1.0);
+            if !numbers.into_iter().all(sound) || !sound(s.pdf) || s.pdf == 0.0 || !unit || masked {
+                return fail("a sample", lane, "scalar", format!("{s:?}"));
+            }
+        }
+        if sample != bsdf.sample(xi[lane]) {
+            return fail(
+                "a sample differs when it is drawn again",
+                lane,
+                "scalar",
+                format!("{sample:?}"),
+            );
+        }
+        // Albedos are integrals, and cost as much as all else of a case.
+        for conserving in if lane == 0 { &[false, true][..] } else { &[] } {
+            let bsdf = if *conserving {
+                &bsdf.conserving()
+            } else {
+                &bsdf
+            };
+            let albedo = bsdf.albedo().0;
+            if !albedo.as_flattened().iter().all(|x| sound(*x)) {
+                let what = format!("an albedo (conserving: {conserving})");
+                return fail(&what, lane, "scalar", format!("{albedo:?}"));
             }
         }
     }

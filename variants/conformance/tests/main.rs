@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic: that is how it fails")]
 
 mod broken;
+mod pasted;
 mod reference;
 
 use broken::*;
@@ -103,7 +104,7 @@ fn even_points_find_a_wrong_probability() {
 fn even_points_find_a_skewed_lobe() {
     assert_fails(
         inversion::even_points_invert_density(&Broken(SKEWED_LOBE)),
-        "LobeMask(2)",
+        "lobes [cone]",
     );
     assert_fails(
         inversion::even_points_invert_density(&Broken(AZIMUTH_UNEVEN)),

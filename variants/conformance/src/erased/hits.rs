@@ -19,7 +19,7 @@ pub(crate) enum Columns<'a> {
 ///
 /// A trait apart from [`ErasedSubject`](super::ErasedSubject), so that slices of hits are compiled for subjects that are tested on
 /// them alone.
-pub trait HitsSubject: Sync {
+pub trait HitsSubject {
     /// Everyday materials and extremes.
     #[doc(hidden)]
     fn hits(&self) -> Box<dyn HitsSet + '_>;

@@ -3,9 +3,8 @@
 use super::Tested;
 use super::handles::Material;
 use super::quadrature::{integrate, panels};
-use super::support::{
-    Draws, Kind, LargestError, Point, direction, for_each_point, narrow, packet, parameters,
-};
+use super::support::{Draws, Kind, Point, direction, for_each_point, narrow, packet, parameters};
+use crate::comparison::LargestError;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::params::HairDesc;

@@ -3,7 +3,8 @@
 use super::Tested;
 use super::handles::Material;
 use super::quadrature::{integrate, panels};
-use super::support::{Kind, LargestError, THETA_O, direction, double, materials, parameters};
+use super::support::{Kind, THETA_O, direction, double, materials, parameters};
+use crate::comparison::LargestError;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::{HairParams, Lobe};
 use hairis_reference::{MatchedReference, Reference};

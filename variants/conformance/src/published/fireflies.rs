@@ -2,7 +2,8 @@
 
 use super::Tested;
 use super::handles::Material;
-use super::support::{Draws, LargestError, direction, double, lanes_of, narrow, parameters};
+use super::support::{Draws, direction, double, lanes_of, narrow, parameters};
+use crate::comparison::LargestError;
 use core::f64::consts::PI;
 use hairis::params::HairDesc;
 use hairis::simd::Level;

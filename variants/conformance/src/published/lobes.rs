@@ -1,9 +1,8 @@
 //! The lobes apart: their sums, and every subset of them.
 
 use super::Tested;
-use super::support::{
-    Draws, Kind, LargestError, double, for_each_point, lanes_of, narrow, packet, relative,
-};
+use super::support::{Draws, Kind, double, for_each_point, lanes_of, narrow, packet};
+use crate::comparison::{LargestError, relative};
 use crate::probe::masks;
 use hairis::simd::Level;
 use hairis::{Lobe, LobeMask};

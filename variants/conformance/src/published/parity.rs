@@ -3,9 +3,8 @@
 
 use super::Tested;
 use super::handles::{Bsdf8, Material};
-use super::support::{
-    Draws, Kind, LargestError, Point, for_each_point, lanes_of, materials, packet, parameters,
-};
+use super::support::{Draws, Kind, Point, for_each_point, lanes_of, materials, packet, parameters};
+use crate::comparison::LargestError;
 use glam::Vec3;
 use hairis::model::SampleLanes;
 use hairis::simd::{Level, f32x8};
@@ -258,10 +257,13 @@ pub fn levels_agree_with_one_lane(tested: &Tested) {
                     let at = || format!("{level} wo {:?} wi {wi:?} xi {:?}", point.wo, xi[lane]);
                     let (a, b) = (bsdf.eval_pdf(*wi), evals.lane(lane));
                     worst[0].see(
-                        super::support::relative(b.value[0], f64::from(a.value[0]), 1e-20),
+                        crate::comparison::relative(b.value[0], f64::from(a.value[0]), 1e-20),
                         at,
                     );
-                    worst[1].see(super::support::relative(b.pdf, f64::from(a.pdf), 0.0), at);
+                    worst[1].see(
+                        crate::comparison::relative(b.pdf, f64::from(a.pdf), 0.0),
+                        at,
+                    );
                     let (Some(a), Some(b)) = (bsdf.sample(xi[lane]), samples.lane(lane)) else {
                         continue;
                     };
@@ -389,7 +391,7 @@ pub fn lobes_and_albedo_agree_with_one_lane(tested: &Tested) {
                     // A lobe that lies off the sphere returns next to nothing, with the digits of its tail.
                     let floor = 1e-4 * f64::from(a.color[c].as_array()[lane]).max(1e-20);
                     worst.see(
-                        super::support::relative(wide, f64::from(scalar), floor),
+                        crate::comparison::relative(wide, f64::from(scalar), floor),
                         || format!("{lobe:?}: {wide}, one lane {scalar}"),
                     );
                 }

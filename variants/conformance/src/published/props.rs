@@ -2,76 +2,19 @@
 
 use super::Tested;
 use super::handles::{Bsdf8, Material};
-use super::support::{
-    Draws, LargestError, direction, lanes_of, materials, narrow, packet, relative,
-};
+use super::support::{Draws, direction, lanes_of, materials, packet};
 use super::support::{Kind, angles};
+use crate::comparison::{LargestError, relative};
+use crate::strategies::{config, finite, hair, vectors};
 use core::f64::consts::PI;
 use glam::Vec3;
 use hairis::simd::{Level, f32x8};
 use hairis::{HairParams, Lobe};
+use proptest::array::uniform3;
+use proptest::prelude::*;
 
 /// Cases of each property of random inputs.
-const CASES: u64 = 20_000;
-
-const SPECIAL: [f32; 14] = [
-    0.0,
-    -0.0,
-    1.0,
-    -1.0,
-    1e-5,
-    0.999_999_94,
-    2.0,
-    f32::MAX,
-    f32::MIN,
-    f32::MIN_POSITIVE,
-    1e-45,
-    -1e-45,
-    1e19,
-    -1e-19,
-];
-
-/// Any finite float, special ones and those of directions more often than chance.
-pub fn finite(draws: &mut Draws) -> f32 {
-    match draws.below(7) {
-        0..3 => narrow(draws.between(-1.0, 1.0)),
-        3 | 4 => SPECIAL[draws.below(SPECIAL.len())],
-        _ => loop {
-            let x = any_bits(draws);
-            if x.is_finite() {
-                return x;
-            }
-        },
-    }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "half of the bits are enough"
-)]
-fn any_bits(draws: &mut Draws) -> f32 {
-    f32::from_bits(draws.bits() as u32)
-}
-
-/// Any float at all.
-fn anything(draws: &mut Draws) -> f32 {
-    match draws.below(4) {
-        0 | 1 => finite(draws),
-        2 => any_bits(draws),
-        _ => [f32::NAN, f32::INFINITY, f32::NEG_INFINITY][draws.below(3)],
-    }
-}
-
-/// Three numbers.
-pub fn three(draws: &mut Draws, x: fn(&mut Draws) -> f32) -> [f32; 3] {
-    [x(draws), x(draws), x(draws)]
-}
-
-/// Legal parameters of any size.
-fn params(draws: &mut Draws) -> HairParams {
-    let brightest = if draws.below(3) == 0 { 10.0 } else { 3.4e38 };
-    draws.params(brightest)
-}
+const CASES: u32 = 20_000;
 
 /// Every number of a packet of eight, for `wi` and `xi` in every lane.
 fn numbers(bsdf: &Bsdf8, level: Level, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
@@ -119,49 +62,37 @@ fn scalar_numbers(
 }
 
 pub fn finite_inputs_give_finite_outputs(tested: &Tested) {
-    let mut draws = Draws(54);
-    for _ in 0..CASES {
-        let params = params(&mut draws);
-        let [wo, wi] = [three(&mut draws, finite), three(&mut draws, finite)].map(Vec3::from_array);
-        // Uniform numbers are in [0, 1); all else is as wild as floats are.
-        let xi = three(&mut draws, finite).map(|x| x.abs().fract());
-        let material = Material::new(tested.model(), &params);
+    // Uniform numbers are in [0, 1); all else is as wild as floats are.
+    let xi = uniform3(finite().prop_map(|x| x.abs().fract()));
+    let input = (hair(), vectors(), vectors(), xi);
+    proptest!(config(file!(), CASES), |((hair, wo, wi, xi) in input)| {
+        let material = Material::new(tested.model(), &hair.params);
         let mut all = vec![scalar_numbers(&material, wo, wi, xi)];
         for level in Level::available() {
             let bsdf = Material::prepare_packed([&material; 8], level, &packet(&[wo]));
             all.push(numbers(&bsdf, level, wi, xi));
         }
         for (positive, any) in all {
-            let at = || format!("wo {wo:?} wi {wi:?} xi {xi:?} {params:?}");
-            assert!(
-                positive.iter().all(|x| x.is_finite() && *x >= 0.0),
-                "{positive:?} {}",
-                at()
-            );
-            assert!(any.iter().all(|x| x.is_finite()), "{any:?} {}", at());
+            prop_assert!(positive.iter().all(|x| x.is_finite() && *x >= 0.0), "{positive:?}");
+            prop_assert!(any.iter().all(|x| x.is_finite()), "{any:?}");
         }
-    }
+    });
 }
 
 pub fn nothing_panics_on_nan_and_infinity(tested: &Tested) {
-    let mut draws = Draws(55);
-    for _ in 0..CASES {
-        let params = params(&mut draws);
-        let [wo, wi] =
-            [three(&mut draws, anything), three(&mut draws, anything)].map(Vec3::from_array);
-        let xi = three(&mut draws, anything);
-        let material = Material::new(tested.model(), &params);
+    let anything = prop_oneof![1 => finite(), 1 => proptest::num::f32::ANY];
+    let input = (hair(), [(); 3].map(|()| uniform3(anything.clone())));
+    proptest!(config(file!(), CASES), |((hair, [wo, wi, xi]) in input)| {
+        let [wo, wi] = [wo, wi].map(Vec3::from_array);
+        let material = Material::new(tested.model(), &hair.params);
         let (positive, _) = scalar_numbers(&material, Vec3::Y, wi, [0.5; 3]);
-        assert!(
-            positive.iter().all(|x| *x >= 0.0),
-            "wi {wi:?} {params:?}: {positive:?}"
-        );
+        prop_assert!(positive.iter().all(|x| *x >= 0.0), "{positive:?}");
         let _ = scalar_numbers(&material, wo, wi, xi);
         for level in Level::available() {
             let bsdf = Material::prepare_packed([&material; 8], level, &packet(&[wo]));
             let _ = numbers(&bsdf, level, wi, xi);
         }
-    }
+    });
 }
 
 pub fn a_sample_agrees_with_eval_and_pdf(tested: &Tested) {

@@ -1,9 +1,8 @@
 //! Samples against the reference: cdf of the drawn angle, value, density and weight at the drawn direction.
 
 use super::Tested;
-use super::support::{
-    Draws, Kind, LargestError, Point, angles, double, for_each_point, lanes_of, relative,
-};
+use super::support::{Draws, Kind, Point, angles, double, for_each_point, lanes_of};
+use crate::comparison::{LargestError, relative};
 use core::f64::consts::PI;
 use hairis::simd::Level;
 use hairis::{Lobe, LobeMask, Sample};

@@ -2,7 +2,8 @@
 
 use super::Tested;
 use super::handles::Material;
-use super::support::{LargestError, direction, double, lanes_of, oracle, relative};
+use super::support::{direction, double, lanes_of, oracle};
+use crate::comparison::{LargestError, relative};
 use hairis::params::HairDesc;
 use hairis::simd::Level;
 use hairis::{HairParams, Lobe};

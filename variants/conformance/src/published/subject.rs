@@ -3,12 +3,14 @@
 use super::support::{double, oracle, parameters};
 use super::{FamilyModel, formulas};
 use crate::probe::{angles, narrow};
-use crate::subject::{Claims, Expected, Materials, ParamsOf, Subject, Tolerance};
+use crate::strategies;
+use crate::subject::{AnyMaterial, Claims, Expected, Materials, ParamsOf, Subject, Tolerance};
 use core::f64::consts::{FRAC_PI_2, PI};
 use core::marker::PhantomData;
 use glam::Vec3;
 use hairis::params::{HairDesc, MAX_WIDTH, MIN_WIDTH};
 use hairis::{HairParams, Hit, LobeMask};
+use proptest::prelude::*;
 
 /// A model of the family, under the general suite.
 #[derive(Clone, Copy, Debug, Default)]
@@ -94,6 +96,10 @@ impl<P: FamilyModel> Subject for Family<P> {
             ("off the sphere", material(&off)),
             ("any brightness", material(&bright)),
         ]
+    }
+
+    fn any_material(&self) -> Option<BoxedStrategy<AnyMaterial<HairParams>>> {
+        Some(strategies::hair().boxed())
     }
 
     fn claims(&self) -> Claims {

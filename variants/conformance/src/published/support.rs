@@ -134,42 +134,6 @@ pub fn oracle(
     formulas.prepare(&parameters(params, factor), double(wo))
 }
 
-/// Error of `got` relative to `want`, or to `floor` where `want` is smaller.
-pub fn relative(got: f32, want: f64, floor: f64) -> f64 {
-    (f64::from(got) - want).abs() / want.abs().max(floor)
-}
-
-/// The largest error so far and where it was seen.
-#[derive(Debug, Default)]
-pub struct LargestError {
-    pub error: f64,
-    at: String,
-}
-
-impl LargestError {
-    pub fn see(&mut self, error: f64, at: impl FnOnce() -> String) {
-        // NaN is the worst of all.
-        if error.is_nan() || error > self.error {
-            *self = Self { error, at: at() };
-        }
-    }
-
-    /// Fails if the worst is above `bound`; prints it for the record (`cargo test -- --nocapture`).
-    #[track_caller]
-    pub fn check(&self, row: &str, bound: f64) {
-        println!(
-            "{row}: measured {:.8e}, bound {bound:.1e}, at {}",
-            self.error, self.at
-        );
-        assert!(
-            self.error <= bound,
-            "{row}: {:.3e} is above {bound:.1e} at {}",
-            self.error,
-            self.at
-        );
-    }
-}
-
 /// The kinds of material that bounds are stated for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {

@@ -3,9 +3,8 @@
 
 use super::Tested;
 use super::handles::Material;
-use super::support::{
-    DEG, LargestError, angles, direction, double, lanes_of, narrow, oracle, relative,
-};
+use super::support::{DEG, angles, direction, double, lanes_of, narrow, oracle};
+use crate::comparison::{LargestError, relative};
 use core::f64::consts::PI;
 use hairis::params::HairDesc;
 use hairis::simd::Level;

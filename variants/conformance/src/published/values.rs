@@ -1,7 +1,8 @@
 //! Values, densities and lobes against the reference in double precision, one lane and eight, on every level.
 
 use super::Tested;
-use super::support::{Kind, LargestError, for_each_point, packet, relative};
+use super::support::{Kind, for_each_point, packet};
+use crate::comparison::{LargestError, relative};
 use hairis::simd::Level;
 use hairis::{Eval, Lobe};
 

@@ -17,9 +17,8 @@
 
 use super::Tested;
 use super::handles::Material;
-use super::support::{
-    Draws, LargestError, angles, direction, double, lanes_of, oracle, parameters,
-};
+use super::support::{Draws, angles, direction, double, lanes_of, oracle, parameters};
+use crate::comparison::LargestError;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::params::HairDesc;

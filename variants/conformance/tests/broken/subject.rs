@@ -2,7 +2,9 @@
 
 use super::{CONE, DIFFUSE, Fiber, Params};
 use hairis::{Hit, LobeMask};
-use hairis_conformance::{Claims, Materials, Subject};
+use hairis_conformance::proptest::array::uniform3;
+use hairis_conformance::proptest::prelude::*;
+use hairis_conformance::{AnyMaterial, Claims, Materials, Subject, strategies};
 
 /// The fibre with this fault, as its author would test it.
 pub(crate) struct Broken(pub(crate) u8);
@@ -68,6 +70,22 @@ impl Subject for Broken {
                 width: 0.1,
             },
         )]
+    }
+
+    fn any_material(&self) -> Option<BoxedStrategy<AnyMaterial<Params>>> {
+        let fault = self.0;
+        let fields = (
+            uniform3(strategies::range([0.0, 1.0])),
+            uniform3(strategies::range([0.0, 1.0])),
+            strategies::range([1e-2, 1.0]),
+        );
+        let params = move |(kd, ks, width)| Params {
+            fault,
+            kd,
+            ks,
+            width,
+        };
+        Some(fields.prop_map(move |fields| params(fields).into()).boxed())
     }
 
     fn claims(&self) -> Claims {

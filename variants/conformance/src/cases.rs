@@ -1,0 +1,328 @@
+//! Random cases of properties: drawn from strategies, shrunk, and printed as code.
+
+mod code;
+pub(crate) mod inputs;
+mod regressions;
+
+use crate::erased::hits::{HitsSet, HitsSubject};
+use crate::erased::{
+    Choice, Direction, ErasedBsdf8, ErasedSubject, MaterialSet, NamedMaterial, Which,
+};
+use crate::failure::{Failure, Outcome, Worst};
+use crate::probe::{Draws, hits8, run_seed};
+use crate::subject::{Claims, Subject};
+use hairis::simd::Level;
+use hairis::{Hit, LobeMask};
+use inputs::{Aim, Drawn, Inputs};
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use regressions::Regressions;
+use std::rc::Rc;
+
+/// Most steps of shrinking one case.
+const STEPS: usize = 20_000;
+
+/// A shading point and queries of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<P> {
+    /// Parameters of the material.
+    pub material: P,
+    /// The hit, in the fibre's frame.
+    pub hit: Hit,
+    /// Direction to evaluate.
+    pub wi: Direction,
+    /// Numbers to sample with.
+    pub xi: [f32; 3],
+    /// Whether the tolerances of the claims apply: they are stated for materials that the subject
+    /// names.
+    pub tolerances: bool,
+}
+
+/// A case of a property: eight shading points, which fill the lanes of a packet.
+#[derive(Clone, Debug)]
+pub struct Case<P> {
+    /// Shading points.
+    pub rows: [Row<P>; 8],
+    /// Lobes, for properties of masks.
+    pub lobes: LobeMask,
+    /// Order of the lanes, for the property of permuted lanes.
+    pub order: [usize; 8],
+}
+
+impl<P> Case<P> {
+    /// A case with the same shading point in all lanes, and all lobes.
+    pub fn new(row: impl Fn() -> Row<P>) -> Self {
+        Self {
+            rows: core::array::from_fn(|_| row()),
+            lobes: LobeMask::ALL,
+            order: [0, 1, 2, 3, 4, 5, 6, 7],
+        }
+    }
+}
+
+/// Origin of the cases of a property.
+#[derive(Clone, Debug)]
+pub enum Source {
+    /// Random numbers.
+    Fresh,
+    /// The regressions of a test, then random numbers; a failure is added to the regressions.
+    Kept(Regressions),
+    /// One case.
+    Pasted(Box<Case<Choice>>),
+}
+
+/// A subject with cases of another source than random numbers.
+///
+/// A failing property prints its smallest case as code that ends in [`pasted`](Self::pasted).
+#[derive(Debug)]
+pub struct Replay<'a, S> {
+    subject: &'a S,
+    source: Source,
+}
+
+impl<'a, S: Subject> Replay<'a, S> {
+    /// The subject, whose properties run on this case alone.
+    ///
+    /// Properties that draw no cases, such as statistical tests, run as they always do.
+    pub fn pasted(subject: &'a S, case: Case<crate::ParamsOf<S>>) -> Self {
+        let Case { rows, lobes, order } = case;
+        let rows = rows.map(|row| Row {
+            material: Choice::pasted(Rc::new(row.material)),
+            hit: row.hit,
+            wi: row.wi,
+            xi: row.xi,
+            tolerances: row.tolerances,
+        });
+        let source = Source::Pasted(Box::new(Case { rows, lobes, order }));
+        Self { subject, source }
+    }
+
+    /// The subject of a test, which keeps its regressions in the folder `proptest-regressions` of
+    /// its package.
+    #[doc(hidden)]
+    pub fn kept(subject: &'a S, package: &str, test: &'static str) -> Self {
+        let source = Source::Kept(Regressions::new(package, test));
+        Self { subject, source }
+    }
+}
+
+impl<S: Subject> ErasedSubject for Replay<'_, S> {
+    fn claims(&self) -> Claims {
+        ErasedSubject::claims(self.subject)
+    }
+
+    fn lobe_names(&self) -> &'static [&'static str] {
+        self.subject.lobe_names()
+    }
+
+    fn set(&self, which: Which) -> Box<dyn MaterialSet + '_> {
+        self.subject.set(which)
+    }
+
+    fn choices(&self, which: Which) -> inputs::Choices {
+        self.subject.choices(which)
+    }
+
+    fn set_of(&self, choices: [&Choice; 8]) -> Box<dyn MaterialSet + '_> {
+        self.subject.set_of(choices)
+    }
+
+    fn source(&self) -> Source {
+        self.source.clone()
+    }
+}
+
+impl<S: Subject> HitsSubject for Replay<'_, S> {
+    fn hits(&self) -> Box<dyn HitsSet + '_> {
+        self.subject.hits()
+    }
+}
+
+/// A case with its materials made.
+pub(crate) struct Trial<'a> {
+    set: Box<dyn MaterialSet + 'a>,
+    pub(crate) hits: [Hit; 8],
+    pub(crate) wi: [Direction; 8],
+    pub(crate) xi: [[f32; 3]; 8],
+    /// Whether the tolerances of the claims apply.
+    pub(crate) tolerances: [bool; 8],
+    pub(crate) lobes: LobeMask,
+    pub(crate) order: [usize; 8],
+}
+
+impl<'a> Trial<'a> {
+    fn new(subject: &'a dyn ErasedSubject, case: &Case<Choice>) -> Self {
+        let rows = &case.rows;
+        Self {
+            set: subject.set_of(rows.each_ref().map(|row| &row.material)),
+            hits: rows.each_ref().map(|row| row.hit),
+            wi: rows.each_ref().map(|row| row.wi),
+            xi: rows.each_ref().map(|row| row.xi),
+            tolerances: rows.each_ref().map(|row| row.tolerances),
+            lobes: case.lobes,
+            order: case.order,
+        }
+    }
+
+    pub(crate) fn material(&self, lane: usize) -> NamedMaterial<'_> {
+        (&*self.set as &dyn MaterialSet).get(lane)
+    }
+
+    /// The shading points in the lanes of a packet, in this order.
+    pub(crate) fn prepare(&self, level: Level, order: [usize; 8]) -> Box<dyn ErasedBsdf8> {
+        let hits = hits8(&order.map(|lane| self.hits[lane]));
+        self.set.prepare_packed(order, level, hits)
+    }
+
+    /// Description of a lane.
+    pub(crate) fn at(&self, lane: usize, how: impl core::fmt::Display) -> String {
+        let (name, hit, wi) = (self.material(lane).name(), self.hits[lane], self.wi[lane]);
+        let xi = self.xi[lane];
+        format!("{name} lane {lane} on {how} {hit:?} {wi:?} xi {xi:?}")
+    }
+}
+
+/// A property of random cases.
+pub(crate) struct Property<'a> {
+    pub(crate) name: &'static str,
+    /// Module and name of the function.
+    pub(crate) path: &'static str,
+    pub(crate) subject: &'a dyn ErasedSubject,
+    pub(crate) which: Which,
+    pub(crate) inputs: Inputs,
+    /// Whether tolerances apply at these inputs.
+    pub(crate) tolerances: bool,
+    /// Number of cases, without `HAIRIS_CASES`.
+    pub(crate) cases: usize,
+}
+
+/// The factor on the number of cases: 1, or that of the environment.
+pub(crate) fn case_factor() -> u32 {
+    let text = std::env::var("HAIRIS_CASES").unwrap_or_else(|_| "1".to_owned());
+    match text.parse() {
+        Ok(factor) if factor > 0 => factor,
+        _ => panic!("HAIRIS_CASES must be a whole number of at least 1, got {text:?}"),
+    }
+}
+
+impl Property<'_> {
+    /// Runs `test` on every case, with the errors of these quantities against their tolerances: the
+    /// worst failure is shrunk, and the smallest case that fails is printed as code.
+    pub(crate) fn check<const N: usize>(
+        &self,
+        quantities: [(&'static str, f64); N],
+        test: impl Fn(&Trial<'_>, &mut [Worst; N]) -> Outcome,
+    ) -> Outcome {
+        let zero = quantities.map(|(what, tolerance)| Worst::new(self.name, what, tolerance));
+        let mut total = zero.clone();
+        let mut run = |case: &Case<Choice>| {
+            let mut worst = zero.clone();
+            let outcome = test(&Trial::new(self.subject, case), &mut worst);
+            let excess = |worst: &Worst| worst.verdict().err();
+            // Of equal ones the first.
+            let failures = worst.iter().rev().filter_map(excess);
+            let failure = outcome
+                .err()
+                .or_else(|| failures.max_by(|a, b| f64::total_cmp(&a.excess, &b.excess)));
+            for (total, worst) in total.iter_mut().zip(worst) {
+                total.merge(worst);
+            }
+            failure
+        };
+        let source = self.subject.source();
+        let kept = match &source {
+            Source::Pasted(case) => return run(case).map_or(Ok(()), Err),
+            Source::Kept(regressions) => regressions.seeds(self.path),
+            Source::Fresh => Vec::new(),
+        };
+        let strategy = self.inputs.cases(self.subject.choices(self.which));
+        let mut fresh = Draws(self.path.bytes().fold(0, |seed, byte| {
+            Draws(seed ^ u64::from(byte) ^ run_seed()).bits()
+        }));
+        let fresh =
+            core::iter::repeat_with(|| fresh.bits()).take(self.cases * case_factor() as usize);
+        let mut found: Option<(Failure, u64, _)> = None;
+        for seed in kept.into_iter().chain(fresh) {
+            let tree = new_tree(&strategy, seed);
+            let Some(failure) = run(&self.resolve(&tree.current())) else {
+                continue;
+            };
+            let last = failure.excess == f64::INFINITY;
+            if found
+                .as_ref()
+                .is_none_or(|(worst, ..)| failure.excess > worst.excess)
+            {
+                found = Some((failure, seed, tree));
+            }
+            if last {
+                break;
+            }
+        }
+        let Some((worst, seed, mut tree)) = found else {
+            return total.into_iter().try_for_each(Worst::report);
+        };
+        let (mut smallest, mut case) = (worst.clone(), self.resolve(&tree.current()));
+        let mut more = tree.simplify();
+        for _ in 0..STEPS {
+            if !more {
+                break;
+            }
+            let next = self.resolve(&tree.current());
+            more = if let Some(failure) = run(&next) {
+                (smallest, case) = (failure, next);
+                tree.simplify()
+            } else {
+                tree.complicate()
+            };
+        }
+        let code = code::write(&case, self.path);
+        if let Source::Kept(regressions) = &source {
+            regressions.add(self.path, seed, &code);
+        }
+        Err(Failure {
+            message: format!("{}\nworst case: {}", smallest.message, worst.message),
+            case: Some(code),
+            ..smallest
+        })
+    }
+
+    /// The case that was drawn, with its directions.
+    fn resolve(&self, (rows, lobes, order): &Drawn) -> Case<Choice> {
+        let set = self.subject.set_of(rows.each_ref().map(|row| &row.0));
+        let row = |lane: usize| {
+            let (material, hit, aim, xi) = &rows[lane];
+            let wi = match *aim {
+                Aim::At(wi) => wi,
+                Aim::Lobe(xi, otherwise) => {
+                    let sample = set.prepare(lane, *hit).sample(xi);
+                    sample.map_or(otherwise, |s| s.wi)
+                }
+            };
+            Row {
+                tolerances: self.tolerances && material.is_named(),
+                material: material.clone(),
+                hit: *hit,
+                wi,
+                xi: *xi,
+            }
+        };
+        Case {
+            rows: core::array::from_fn(row),
+            lobes: *lobes,
+            order: *order,
+        }
+    }
+}
+
+/// The case of a seed.
+fn new_tree<S: Strategy>(strategy: &S, seed: u64) -> S::Tree {
+    let mut draws = Draws(seed);
+    let bytes: [[u8; 8]; 4] = core::array::from_fn(|_| draws.unseeded().to_le_bytes());
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, bytes.as_flattened());
+    let config = Config {
+        failure_persistence: None,
+        ..Config::default()
+    };
+    let tree = strategy.new_tree(&mut TestRunner::new_with_rng(config, rng));
+    tree.unwrap_or_else(|reason| panic!("strategies of materials must not reject: {reason}"))
+}

@@ -1,0 +1,40 @@
+//! Comparison of results with what is expected of them.
+
+/// Error of `got` relative to `want`, or to `floor` where `want` is smaller.
+#[must_use]
+pub fn relative(got: impl Into<f64>, want: f64, floor: f64) -> f64 {
+    (got.into() - want).abs() / want.abs().max(floor)
+}
+
+/// The largest error of one quantity so far, and its place. NaN is the largest of all.
+#[derive(Clone, Debug, Default)]
+pub struct LargestError {
+    /// The error.
+    pub error: f64,
+    /// Its place.
+    pub at: String,
+}
+
+impl LargestError {
+    /// Takes an error into account.
+    pub fn see(&mut self, error: f64, at: impl FnOnce() -> String) {
+        if error > self.error || (error.is_nan() && !self.error.is_nan()) {
+            *self = Self { error, at: at() };
+        }
+    }
+
+    /// Prints the largest error beside its bound, for the record (`cargo test -- --nocapture`).
+    ///
+    /// # Panics
+    ///
+    /// If it is above the bound, or NaN.
+    #[track_caller]
+    pub fn check(&self, row: &str, bound: f64) {
+        let Self { error, at } = self;
+        println!("{row}: measured {error:.8e}, bound {bound:.1e}, at {at}");
+        assert!(
+            *error <= bound,
+            "{row}: {error:.3e} is above {bound:.1e} at {at}"
+        );
+    }
+}
