@@ -54,6 +54,7 @@
 //! | `weights_are_bounded` | weights are below the bound that the subject states, if any |
 //! | `eval_is_reciprocal` | S with its directions exchanged, if claimed |
 //! | `agrees_with_reference` | agreement with the reference in double precision, if there is one |
+//! | `lanes_are_inlined` | no level is much slower than portable lanes: all is inlined |
 //!
 //! All run on every level that the CPU has. Each property is also a function that returns an
 //! [`Outcome`]; `cargo test -- --nocapture` prints the largest error of each beside the claim that
@@ -137,6 +138,7 @@ pub mod reference;
 pub mod resampling;
 pub mod sampling;
 pub mod slices;
+pub mod speed;
 pub mod statistics;
 pub mod strategies;
 mod subject;
@@ -185,6 +187,7 @@ macro_rules! conformance {
             bounds weights_are_bounded,
             bounds eval_is_reciprocal,
             reference agrees_with_reference,
+            speed lanes_are_inlined,
             $($more)*
         );
     };

@@ -1,8 +1,10 @@
 //! A sound model of two lobes, and copies of it with one fault each: the only file of these tests that implements
 //! [`Model`].
 
+mod slow;
 mod subject;
 
+pub(crate) use slow::Slow;
 pub(crate) use subject::Broken;
 
 use core::f32::consts::{FRAC_1_PI, PI};

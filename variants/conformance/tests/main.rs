@@ -8,7 +8,7 @@ mod reference;
 use broken::*;
 use hairis_conformance::{
     Claims, Materials, Outcome, Subject, bounds, chi_square, environment, hits, integral,
-    inversion, lanes, lobes, not_numbers, resampling, sampling, slices, totality,
+    inversion, lanes, lobes, not_numbers, resampling, sampling, slices, speed, totality,
 };
 
 hairis_conformance::conformance!(sound, crate::Broken(crate::SOUND));
@@ -254,4 +254,12 @@ fn a_value_that_is_not_reciprocal_is_found() {
         bounds::eval_is_reciprocal(&Broken(NOT_RECIPROCAL)),
         "exchanged",
     );
+}
+
+#[test]
+fn a_function_that_is_not_inlined_is_found() {
+    if hairis::simd::Level::available().count() > 1 {
+        assert_fails(speed::lanes_are_inlined(&Slow), "eval_pdf8");
+    }
+    speed::lanes_are_inlined(&Broken(SOUND)).unwrap();
 }

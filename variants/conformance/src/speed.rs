@@ -1,0 +1,78 @@
+//! Eight lanes are worth their instruction sets.
+
+use crate::erased::{Direction, ErasedBsdf, ErasedSubject, Which};
+use crate::failure::{Failure, Outcome};
+use crate::probe::{Draws, packet, triples};
+use core::hint::black_box;
+use hairis::simd::{Level, f32x8};
+use std::time::Instant;
+
+const NAME: &str = "every function over lanes is inlined";
+
+/// Packets of a run, and runs, of which the fastest counts.
+const PACKETS: usize = 64;
+const RUNS: usize = 25;
+
+/// Most times as long as portable lanes take. Inlined, wider levels take at most 1.8 times as long
+/// where a test calls a small model through objects; with a call in each operation they take 12.
+const MOST: f64 = 5.0;
+
+/// Names of the calls that are timed.
+const CALLS: [&str; 2] = ["eval_pdf8", "sample8"];
+
+/// The shortest time that each call takes.
+fn times(
+    bsdf: &dyn ErasedBsdf,
+    level: Level,
+    wi: &[hairis::Vec3x8],
+    xi: &[[f32x8; 3]],
+) -> [f64; CALLS.len()] {
+    let bsdf = bsdf.with_level(level);
+    let mut least = [f64::INFINITY; CALLS.len()];
+    for _ in 0..RUNS {
+        let start = Instant::now();
+        for wi in wi {
+            black_box(bsdf.eval_pdf8(black_box(wi)));
+        }
+        let between = Instant::now();
+        for xi in xi {
+            black_box(bsdf.sample8(black_box(xi)));
+        }
+        let times = [between - start, between.elapsed()].map(|time| time.as_secs_f64());
+        least = [0, 1].map(|call| f64::min(least[call], times[call]));
+    }
+    least
+}
+
+/// Evaluation and sampling take no level of the CPU much longer than portable lanes, as they do
+/// where a function over lanes, such as `lobes`, lacks `#[inline(always)]`: each of its operations
+/// is then a call.
+///
+/// # Errors
+///
+/// If a call takes longer: its name and the level.
+pub fn lanes_are_inlined(subject: &dyn ErasedSubject) -> Outcome {
+    let mut draws = Draws(0x5bee);
+    let set = subject.set(Which::Everyday);
+    let bsdf = set.prepare(0, draws.hit());
+    let mut directions = || -> [Direction; 8] { core::array::from_fn(|_| draws.direction()) };
+    let wi: Vec<_> = (0..PACKETS).map(|_| packet(&directions())).collect();
+    let mut numbers = || -> [[f32; 3]; 8] { core::array::from_fn(|_| draws.xi3()) };
+    let xi: Vec<_> = (0..PACKETS).map(|_| triples(&numbers())).collect();
+    let portable = times(&*bsdf, Level::portable(), &wi, &xi);
+    for level in Level::available() {
+        let took = times(&*bsdf, level, &wi, &xi);
+        for (call, (took, portable)) in CALLS.into_iter().zip(took.into_iter().zip(portable)) {
+            let ratio = took / portable;
+            println!("{NAME}: {call} on {level} takes {ratio:.2} times as long as portable lanes");
+            if ratio > MOST {
+                let message = format!(
+                    "{call} on {level} takes {ratio:.1} times as long as portable lanes, allowed {MOST}: \
+                     a function over lanes lacks `#[inline(always)]`, or calls one that does"
+                );
+                return Err(Failure::new(NAME, message));
+            }
+        }
+    }
+    Ok(())
+}
