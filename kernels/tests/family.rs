@@ -41,6 +41,7 @@ impl<const BANDS: usize, const BY_CHANNEL: bool> FamilyModel for Bands<BANDS, BY
     // A Gaussian, and with it the density, is cut to 0 at `2^-115` of its peak.
     const PDF_FLOOR: f64 = 1e-20;
     const ROWS: Rows = MATCHED;
+    const DOCS: &'static str = include_str!("../src/hair/matched.rs");
 
     fn bell() -> Gaussian {
         Gaussian

@@ -43,6 +43,7 @@ impl FamilyModel for Bands {
     const OVER_CAUCHY: f64 = 1.0;
     const PDF_FLOOR: f64 = 0.0;
     const ROWS: Rows = MATCHED;
+    const DOCS: &'static str = include_str!("../../kernels/src/hair/matched.rs");
 
     fn bell() -> Cauchy {
         Cauchy::PAPER

@@ -64,7 +64,7 @@ use crate::{HairParams, LobeMask, PerLobe};
 /// | sampler | Gaussian: V, gain | all-Cauchy: V, gain | largest weight, Gaussian, all-Cauchy |
 /// |---|---|---|---|
 /// | published | .2469 | .1889 | |
-/// | `Matched<_, 5>` | .0412, 7.3 (2.3) | .0448, 4.4 (2.1) | 8.4, 5.2 |
+/// | `Matched<_, 5>` | .0412, 7.3 (2.3) | .0448, 4.4 (2.1) | 8.4, 5.3 |
 /// | `Matched<_, 9>`, the default | .0206, 14 (3.7) | .0223, 8.8 (3.5) | 4.8, 3.4 |
 /// | `Matched<_, 25>` | .0059, 56 (8.3) | .0065, 35 (8.2) | 2.5, 2.5 |
 ///

@@ -57,6 +57,8 @@ pub trait FamilyModel: Sync {
     const PDF_FLOOR: f64;
     /// Bounds.
     const ROWS: Rows;
+    /// The source whose documentation has the table of the matched samplers, for tests of those.
+    const DOCS: &'static str = "";
 }
 
 /// The formulas that a model is held against.
@@ -78,6 +80,7 @@ pub struct Tested {
     over_cauchy: f64,
     pdf_floor: f64,
     rows: Rows,
+    docs: &'static str,
 }
 
 impl fmt::Debug for Tested {
@@ -105,6 +108,7 @@ impl Tested {
             over_cauchy: S::OVER_CAUCHY,
             pdf_floor: S::PDF_FLOOR,
             rows: S::ROWS,
+            docs: S::DOCS,
         }
     }
 
@@ -117,6 +121,29 @@ impl Tested {
     fn first(&self) -> (&dyn AnyModel, f32) {
         let (model, factor) = &self.forms[0];
         (&**model, *factor)
+    }
+
+    /// The figures that the documentation states for so many bands, each with the unit of its last
+    /// digit: V, its mean gain and its least one, and the largest weight.
+    fn documented(&self, bands: usize) -> [[f64; 2]; 4] {
+        let name = format!("`Matched<_, {bands}>`");
+        let row = self
+            .docs
+            .lines()
+            .find(|line| line.contains(&name) && line.contains("| "));
+        let row = row.unwrap_or_else(|| panic!("the docs have no row of {name}"));
+        let cells: Vec<&str> = row.split('|').collect();
+        let column = usize::from(self.formulas.shape == Shape::Cauchy);
+        let words = cells[2 + column].split_whitespace();
+        let words = words.chain(cells[4].split_whitespace().nth(column));
+        let number = |word: &str| {
+            let digits = word.trim_matches(|c: char| !c.is_ascii_digit() && c != '.');
+            let decimals = digits.split_once('.').map_or(0, |(_, digits)| digits.len());
+            let unit = (0..decimals).fold(1.0, |unit, _| unit / 10.0);
+            [digits.parse().expect("a number"), unit]
+        };
+        let numbers: Vec<_> = words.map(number).collect();
+        numbers.try_into().expect("four numbers")
     }
 
     /// The model of the first form.

@@ -92,5 +92,7 @@ pub fn weights_are_below_their_bound_and_close_to_the_mean(tested: &Tested) {
             &format!("{bands} bands: bound on weights over the mean"),
             limit,
         );
+        let [.., [stated, _]] = tested.documented(bands);
+        mean.check(&format!("{bands} bands: that bound, as documented"), stated);
     }
 }

@@ -221,10 +221,17 @@ pub fn variance_falls_by_what_is_promised(tested: &Tested) {
             &over_grid(tested.sampler(Some(bands)), &shares, &jumps(tested, bands)),
         )
     });
-    for (got, [v, gain, least]) in gains.iter().zip(tested.rows.gain) {
+    for ((got, [v, gain, least]), bands) in gains.iter().zip(tested.rows.gain).zip([5, 9, 25]) {
         assert!(
             got[0] <= v && got[1] >= gain && got[2] >= least,
             "{got:?}, not {v}, {gain}, {least}"
         );
+        for (got, [stated, unit]) in got.iter().zip(tested.documented(bands)) {
+            let off = (got - stated).abs();
+            assert!(
+                off <= 0.5 * unit,
+                "{bands} bands: {got} is documented as {stated}"
+            );
+        }
     }
 }
