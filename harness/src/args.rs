@@ -29,7 +29,8 @@ run, and the exit code is 2."#;
 
 const STUDY: &str =
     "Files in DIR: report.html, and its plots in figures/; study.csv, the rows, which depend on the seed and the build
-alone; difference.csv, how different the models look; study.json, the settings; times.csv and efficiency.csv, which
+alone; difference.csv, how different the models look; materials.csv, the rows of --model and --material; study.json,
+the settings; times.csv and efficiency.csv, which
 depend on the machine as well. With the features `parquet` and `png` of the build: the tables as .parquet, the plots as
 .png. Finished cells are kept in DIR/cells-I-of-N.jsonl: the same command continues from there.";
 
@@ -101,6 +102,12 @@ pub struct Compare {
     /// Layer of the .exr environment [default: the only one with colour]
     #[arg(long, value_name = "NAME", requires = "env")]
     pub layer: Option<String>,
+    /// Model of the registry to measure, each of its presets with every sampler; may be repeated
+    #[arg(long, value_name = "NAME")]
+    pub model: Vec<String>,
+    /// Material to measure likewise, in the JSON of `hairis eval`; may be repeated
+    #[arg(long, value_name = "FILE")]
+    pub material: Vec<PathBuf>,
 }
 
 /// Flags of `hairis study`.
@@ -121,6 +128,12 @@ pub struct Study {
     /// Layer of the .exr environment [default: the only one with colour]
     #[arg(long, value_name = "NAME", requires = "env")]
     pub layer: Option<String>,
+    /// Model of the registry to measure beside the hair of the grid, each of its presets with every sampler; may be repeated
+    #[arg(long, value_name = "NAME")]
+    pub model: Vec<String>,
+    /// Material to measure likewise, in the JSON of `hairis eval`; may be repeated
+    #[arg(long, value_name = "FILE")]
+    pub material: Vec<PathBuf>,
     /// Compute only part I of N (I from 1 to N), for `hairis merge` to join
     #[arg(
         long,

@@ -84,7 +84,8 @@ pub fn header(seed: u64, quick: bool) -> Header {
     let plan = Plan {
         seed,
         quick,
-        environment: &sky,
+        lights: (&sky).into(),
+        materials: &[],
     };
     plan.header(Shard::WHOLE)
 }
@@ -106,7 +107,8 @@ pub fn run(
     let plan = Plan {
         seed,
         quick,
-        environment: &sky,
+        lights: (&sky).into(),
+        materials: &[],
     };
     let grid = plan.grid();
     // Quadrature and sampling take about as long.
@@ -131,7 +133,7 @@ pub fn run(
         glint::density(&cells)?,
         glint::interval(&cells)?,
     ]);
-    let lights = performance::LIGHTS.map(|[_, name]| name);
+    let lights = performance::LIGHTS.map(|light| light.words);
     let settings = Settings {
         seed,
         quick,
@@ -144,6 +146,16 @@ pub fn run(
         machine: machine!(),
         claims,
     })
+}
+
+/// All that is sampled under the lights of a plan: the claims by light, and the figures of the example.
+#[cfg(test)]
+pub(crate) fn sampled(plan: &Plan<'_>, journal: &Journal) -> Result<Vec<String>, Error> {
+    let progress = Progress::new(plan.grid().len(), &|_, _| ());
+    let (claims, _) = performance::by_light(plan, journal, &progress)?;
+    let example = uniform::measured(plan, &uniform::example(), journal)?;
+    let claims = claims.iter().map(|claim| format!("{claim:?}"));
+    Ok(claims.chain([format!("{example:?}")]).collect())
 }
 
 /// The hair of a cell.

@@ -2,6 +2,7 @@
 
 mod charts;
 mod page;
+mod query;
 mod rays;
 mod tables;
 
@@ -10,14 +11,17 @@ pub use tables::summary as summary_tables;
 
 use crate::agreement::{self, AgreementResult};
 use crate::efficiency::{self, EfficiencyConfig, EfficiencyResult, SAMPLERS, SampleCosts};
+use crate::materials::{self, MaterialPose, MaterialRow, NamedMaterial};
 use crate::rays::{self as ray_figures, RaysConfig, RaysResult};
 use crate::speed::{self, SpeedConfig, SpeedReport};
 use crate::study::output::Times;
 use crate::subject::ModelKind;
+use crate::variance::SampleBudget;
 use hairis::ParamError;
 use hairis_instruments::light::Environment;
 use hairis_instruments::machine;
 use hairis_instruments::machine::Machine;
+use hairis_instruments::table::Table;
 use serde::Serialize;
 
 /// Everything that was found; `compare.json` is this.
@@ -35,6 +39,9 @@ pub struct Comparison {
     pub efficiency: EfficiencyResult,
     /// One ray for many candidates.
     pub rays: RaysResult,
+    /// Materials that were asked for, each from the inclinations of `efficiency`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<MaterialPose>,
 }
 
 /// Settings of a comparison.
@@ -59,6 +66,7 @@ pub struct CompareSettings {
 pub fn run(
     settings: CompareSettings,
     environment: &Environment,
+    materials: &[NamedMaterial],
     progress: &(dyn Fn(&'static str, f64) + Sync),
 ) -> Result<Comparison, ParamError> {
     let CompareSettings { seed, quick, .. } = settings;
@@ -82,6 +90,14 @@ pub fn run(
         &efficiency,
         &share("rays"),
     );
+    let materials = materials::run(
+        materials,
+        seed,
+        SampleBudget::of(quick),
+        environment.into(),
+        &efficiency::THETA_O_DEG,
+        &share("materials"),
+    )?;
     Ok(Comparison {
         settings,
         machine: machine!(),
@@ -89,6 +105,7 @@ pub fn run(
         agreement,
         efficiency,
         rays,
+        materials,
     })
 }
 
@@ -105,6 +122,16 @@ fn sample_costs(times: &Times) -> SampleCosts {
 }
 
 impl Comparison {
+    fn material_rows(&self) -> Vec<MaterialRow<'_>> {
+        self.materials.iter().flat_map(MaterialPose::rows).collect()
+    }
+
+    /// The table of the materials that were asked for.
+    fn material_table(&self) -> Option<Table> {
+        let rows = self.material_rows();
+        (!rows.is_empty()).then(|| materials::table(&rows))
+    }
+
     /// Failures: wrong answers, errors beyond their bounds, biased estimates. Empty if there are none.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
@@ -136,7 +163,10 @@ impl Comparison {
             .failures
             .iter()
             .map(|what| format!("rays: {what}"));
-        slow.chain(far).chain(biased).chain(rays).collect()
+        let of_materials = materials::failures(&self.material_rows());
+        let of_materials = of_materials.iter().map(|what| format!("materials: {what}"));
+        let all = slow.chain(far).chain(biased).chain(rays);
+        all.chain(of_materials).collect()
     }
 }
 

@@ -51,11 +51,11 @@ pub(crate) use measure::{bias_z, is_tested};
 pub(crate) use reference::stratified;
 pub(crate) use run::z_bound;
 
+use crate::lights::Lights;
 use crate::sampler::Sampler;
 use crate::subject::ModelKind;
 use hairis::params::HairDesc;
 use hairis::{HairParams, ParamError};
-use hairis_instruments::light::Environment;
 #[cfg(test)]
 use hairis_instruments::light::Light;
 use hairis_instruments::sequence::stream_id;
@@ -174,8 +174,8 @@ pub struct EfficiencyConfig<'a> {
     pub seed: u64,
     /// Numbers of samples.
     pub budget: Budget,
-    /// The environment among the lights: a file's, or [`Sky`](hairis_instruments::light::Sky)'s.
-    pub environment: &'a Environment,
+    /// The lights.
+    pub lights: Lights<'a>,
     /// The hair.
     pub params: HairParams,
     /// Times of a sample, measured elsewhere; without them there are no figures of `1 / (V time)`.
@@ -193,11 +193,11 @@ impl<'a> EfficiencyConfig<'a> {
     /// assert_eq!(config.budget, Budget::new(true));
     /// ```
     #[must_use]
-    pub fn new(seed: u64, quick: bool, environment: &'a Environment) -> Self {
+    pub fn new(seed: u64, quick: bool, lights: impl Into<Lights<'a>>) -> Self {
         Self {
             seed,
             budget: Budget::new(quick),
-            environment,
+            lights: lights.into(),
             params: HairParams::bright(),
             costs: None,
         }

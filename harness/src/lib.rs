@@ -10,12 +10,15 @@ pub mod efficiency;
 pub mod figures;
 pub mod journal;
 pub mod lights;
+pub mod materials;
 pub mod rays;
 pub mod sampler;
 mod sealed;
 pub mod speed;
 pub mod study;
 pub mod subject;
+mod timer;
+pub mod variance;
 
 /// Example of the workspace README.
 #[cfg(doctest)]

@@ -12,15 +12,14 @@
 mod threads;
 
 use crate::subject::random;
+use crate::timer::{quartiles, stretch, turns};
 use core::hint::black_box;
 use hairis::ParamError;
 use hairis::simd::Level;
 pub use hairis_benches::contenders::TimedOp;
 use hairis_benches::contenders::{Contender, Contest, TIMED_DIRECTIONS, TimedInputs, contests};
-use hairis_benches::task::Pass;
 use hairis_instruments::direction::uniform_direction;
 use hairis_instruments::sequence::{Independent, stream_id};
-use hairis_instruments::stats::percentile;
 use hairis_variants::ModelId;
 use serde::Serialize;
 use std::time::Instant;
@@ -236,7 +235,7 @@ impl SpeedCell {
     /// Times every contender once, in an order that changes from round to round.
     fn round(&mut self, round: usize) {
         let count = self.times.len();
-        for k in (0..count).map(|k| (k + round) % count) {
+        for k in turns(count, round) {
             let (task, Times { passes, ns }) =
                 (&mut self.contest.contenders[k].task, &mut self.times[k]);
             // One stretch untimed: the one before was another's, and left the caches its own and the vector units asleep.
@@ -312,28 +311,6 @@ fn deeper(depth: usize, f: &mut dyn FnMut()) {
         deeper(depth - 1, f)
     }
     black_box(&frame);
-}
-
-/// Time of `passes` passes, ns.
-pub(crate) fn stretch(task: &mut dyn Pass, passes: u32) -> f64 {
-    let start = Instant::now();
-    for _ in 0..passes {
-        task.pass();
-    }
-    start.elapsed().as_secs_f64() * 1e9
-}
-
-/// First quartile, median and third quartile.
-pub(crate) fn quartiles(samples: &[f64]) -> [f64; 3] {
-    let mut sorted = samples.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    [0.25, 0.5, 0.75].map(|p| percentile(&sorted, p))
-}
-
-/// Standard error of the median of `count` numbers with these quartiles: that of a normal spread, whose deviation is 1/1.349 of
-/// their distance, and a median's error 1.2533 of a mean's.
-pub(crate) fn median_error(quartiles: [f64; 3], count: usize) -> f64 {
-    1.2533 / 1.349 * (quartiles[2] - quartiles[0]) / (count as f64).sqrt()
 }
 
 #[cfg(test)]

@@ -36,58 +36,35 @@
 mod cell;
 mod check;
 mod equal_time;
+mod estimator;
+mod finished;
 pub mod grid;
 pub mod output;
 pub mod part;
-mod perfect;
 mod rays;
 mod report;
 mod rows;
 mod summary;
-mod tally;
 mod times;
 mod view;
 
 pub use grid::{Cell, Grid};
 
-pub(crate) use times::in_turns;
 pub(crate) use view::gain;
 
-use crate::lights::lights;
+use crate::lights::Lights;
+use crate::materials::NamedMaterial;
 use crate::sampler::Sampler;
 use crate::subject::ModelKind;
+use crate::variance::SampleBudget;
 use hairis::ParamError;
 use hairis::simd::Level;
 use hairis_instruments::error::Error;
-use hairis_instruments::light::Environment;
 use hairis_instruments::machine;
 use hairis_instruments::shard::Shard;
 use hairis_instruments::stats::Estimate;
 use part::{Finished, Header};
 use rayon::prelude::*;
-use wide::f32x8;
-
-/// Samples of a cell. The first two are multiples of eight.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct StudyBudget {
-    /// Samples of each sampler of each model.
-    pub samples: usize,
-    /// Samples of each light that is not visible from everywhere.
-    pub light_samples: usize,
-    /// Pools of 32 + 32 candidates of each sampler and light, from whose parts rays are chosen; none if 0.
-    pub pools: usize,
-}
-
-impl StudyBudget {
-    /// Samples of a light to one of a sampler.
-    fn ratio(self) -> f32x8 {
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "a ratio of two small numbers"
-        )]
-        f32x8::splat((self.light_samples as f64 / self.samples as f64) as f32)
-    }
-}
 
 /// Settings of a study.
 #[derive(Clone, Copy, Debug)]
@@ -96,8 +73,10 @@ pub struct Plan<'a> {
     pub seed: u64,
     /// Whether it is the short run.
     pub quick: bool,
-    /// The environment among the lights.
-    pub environment: &'a Environment,
+    /// The lights.
+    pub lights: Lights<'a>,
+    /// Materials beside the hair of the grid, seen from its inclinations.
+    pub materials: &'a [NamedMaterial],
 }
 
 impl Plan<'_> {
@@ -109,20 +88,8 @@ impl Plan<'_> {
 
     /// Numbers of samples per cell.
     #[must_use]
-    pub const fn budget(&self) -> StudyBudget {
-        if self.quick {
-            StudyBudget {
-                samples: 1 << 15,
-                light_samples: 1 << 12,
-                pools: 128,
-            }
-        } else {
-            StudyBudget {
-                samples: 1 << 18,
-                light_samples: 1 << 15,
-                pools: 256,
-            }
-        }
+    pub const fn budget(&self) -> SampleBudget {
+        SampleBudget::of(self.quick)
     }
 
     /// Header of the part file of `shard`.
@@ -149,7 +116,10 @@ impl Plan<'_> {
             samples: budget.samples,
             light_samples: budget.light_samples,
             pools: budget.pools,
-            environment: part::digest(self.environment),
+            environment: self
+                .lights
+                .environment()
+                .map_or_else(String::new, part::digest),
             models: ModelKind::ALL
                 .iter()
                 .map(|model| model.name().to_owned())
@@ -158,13 +128,35 @@ impl Plan<'_> {
                 .iter()
                 .map(|sampler| sampler.name().to_owned())
                 .collect(),
-            lights: lights(Some(self.environment))
+            lights: self
+                .lights
+                .all()
                 .iter()
                 .map(|light| light.name().to_owned())
                 .collect(),
             cells: self.grid().len(),
+            materials: self.materials.iter().map(NamedMaterial::key).collect(),
             shard: shard.to_string(),
         }
+    }
+}
+
+/// Work with a number: a cell of the grid, then materials, each from the inclinations of the grid in turn.
+pub(crate) enum Place {
+    Cell(Cell),
+    /// Place of the material, and inclination of the viewer in degrees.
+    Material(usize, f64),
+}
+
+impl Place {
+    /// The work of a number.
+    pub(crate) fn of(index: usize, grid: &Grid) -> Self {
+        let Some(place) = index.checked_sub(grid.len()) else {
+            return Self::Cell(grid.cell(index));
+        };
+        let inclinations = grid.theta_o_deg;
+        let theta_o = inclinations[place % inclinations.len()];
+        Self::Material(place / inclinations.len(), f64::from(theta_o))
     }
 }
 
@@ -179,31 +171,52 @@ pub fn run(
     keep: impl Fn(Finished) -> Result<(), Error> + Sync,
 ) -> Result<(), Error> {
     let (grid, budget) = (plan.grid(), plan.budget());
-    let lights = lights(Some(plan.environment));
+    let lights = plan.lights.all();
     todo.par_iter().with_max_len(1).try_for_each(|&index| {
-        let found = cell::measure(plan.seed, budget, &lights, &grid.cell(index), &Sampler::ALL)?;
+        let found = match Place::of(index, &grid) {
+            Place::Cell(cell) => cell::measure(plan.seed, budget, &lights, &cell, &Sampler::ALL)?,
+            Place::Material(material, theta_o_deg) => {
+                plan.materials[material].measure(plan.seed, budget, plan.lights, theta_o_deg)?
+            }
+        };
         keep(Finished::of(index, &found))
     })
 }
 
-/// V of some samplers in one cell: models outermost, then `samplers`, then lights; after them V of perfect sampling if its
-/// source is one of `samplers`. With the budget of the plan, the figures of [`run`].
+/// V on a model under a light.
+#[derive(Clone, Debug)]
+pub(crate) struct Variance {
+    pub(crate) model: ModelKind,
+    /// Name of the light.
+    pub(crate) light: String,
+    pub(crate) v: Estimate,
+}
+
+/// V of some samplers in one cell. With the budget of the plan, the figures of [`run`].
 ///
 /// # Errors
 ///
 /// The hair's.
 pub(crate) fn variances(
     plan: &Plan<'_>,
-    budget: StudyBudget,
+    budget: SampleBudget,
     cell: &Cell,
     samplers: &[Sampler],
-) -> Result<Vec<Estimate>, ParamError> {
-    let found = cell::measure(
-        plan.seed,
-        budget,
-        &lights(Some(plan.environment)),
-        cell,
-        samplers,
-    )?;
-    Ok(found.iter().map(|of| of.figures.v).collect())
+) -> Result<Vec<Variance>, ParamError> {
+    let lights = plan.lights.all();
+    let found = cell::measure(plan.seed, budget, &lights, cell, samplers)?;
+    let mut rows = found.iter();
+    let mut all = Vec::new();
+    for model in ModelKind::ALL {
+        for _ in samplers {
+            for (light, row) in lights.iter().zip(rows.by_ref()) {
+                all.push(Variance {
+                    model,
+                    light: light.name().to_owned(),
+                    v: row.figures.v,
+                });
+            }
+        }
+    }
+    Ok(all)
 }

@@ -22,6 +22,7 @@ pub use smooth::Smooth;
 pub use sun::Sun;
 
 use crate::quadrature::{Integral, SphereIntegrator};
+use core::fmt::Debug;
 use glam::DVec3;
 use hairis::Vec3x8;
 use wide::f32x8;
@@ -56,9 +57,19 @@ pub struct Seen8 {
 /// Light arriving from infinitely far away.
 ///
 /// Directions given to `see` need not be exactly of unit length: a direction that went through `f32` is good enough.
-pub trait Light: Sync + Send {
-    /// Name in tables and reports.
+pub trait Light: Debug + Sync + Send {
+    /// Name in tables and files; no two lights share one.
     fn name(&self) -> &str;
+
+    /// Name in a sentence.
+    fn words(&self) -> &str {
+        self.name()
+    }
+
+    /// Whether it shines from everywhere, about as brightly: directions of the hair's sampler alone then measure it well.
+    fn is_everywhere(&self) -> bool {
+        false
+    }
 
     /// [`radiance`](Self::radiance) and [`pdf`](Self::pdf).
     fn see(&self, dir: DVec3) -> ([f64; 3], f64);

@@ -16,11 +16,11 @@ mod verdict;
 use crate::args::Figures;
 use crate::cmd::environment;
 use crate::hair::Choice;
-use crate::materials;
 use crate::scenes::Name;
 use hairis_instruments::error::Error;
 use hairis_instruments::interrupt::Interrupt;
 use hairis_instruments::progress::bar;
+use hairis_materials::files;
 use hairis_variants::ModelId;
 use measure::{Measured, Plan};
 use models::Preset;
@@ -67,7 +67,8 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         known.push(*name);
         is_new
     });
-    let materials = materials::read(&flags.material)?;
+    let materials = files::read(&flags.material)
+        .map_err(|problem| Error::Usage(format!("--material {problem}")))?;
     let hairs = |name: Name| -> Result<Vec<Choice>, Error> {
         let of_file = |(name, spec): &(String, _)| Choice::of_material(name, spec, None);
         let hairs = if materials.is_empty() {

@@ -23,7 +23,6 @@ pub mod hair;
 pub mod layers;
 pub mod lights;
 pub mod material;
-pub mod materials;
 pub mod memory;
 pub mod numbers;
 pub mod part;

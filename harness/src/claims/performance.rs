@@ -8,20 +8,49 @@ use crate::study::{Cell, Plan, gain, variances};
 use crate::subject::ModelKind;
 use hairis::ParamError;
 use hairis_instruments::error::Error;
+use hairis_instruments::light::{Constant, Rectangle, Sky, Smooth, Sun};
 use hairis_instruments::progress::Progress;
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::number;
 
-/// Names of the claims, and the lights in words, in the order of the study.
-pub(super) const LIGHTS: [[&str; 2]; 5] = [
-    ["cauchy-samples-better-constant", "constant light"],
-    ["cauchy-samples-better-smooth", "smooth light"],
-    ["cauchy-samples-better-sun", "a 5° sun"],
-    [
-        "cauchy-samples-better-area",
-        "a large area light along the fibre",
-    ],
-    ["cauchy-samples-better-sky", "the procedural sky"],
+/// A light of the claims.
+#[derive(Clone, Copy)]
+pub(super) struct ClaimedLight {
+    /// Name of the light.
+    name: &'static str,
+    /// Name of the claim.
+    id: &'static str,
+    /// The light in sentences.
+    pub(super) words: &'static str,
+}
+
+/// The lights of the claims, in the order of reports; others have no part in them.
+pub(super) const LIGHTS: [ClaimedLight; 5] = [
+    ClaimedLight {
+        name: Constant::NAME,
+        id: "cauchy-samples-better-constant",
+        words: "constant light",
+    },
+    ClaimedLight {
+        name: Smooth::NAME,
+        id: "cauchy-samples-better-smooth",
+        words: "smooth light",
+    },
+    ClaimedLight {
+        name: Sun::NAME,
+        id: "cauchy-samples-better-sun",
+        words: "a 5° sun",
+    },
+    ClaimedLight {
+        name: Rectangle::NAME,
+        id: "cauchy-samples-better-area",
+        words: "a large area light along the fibre",
+    },
+    ClaimedLight {
+        name: Sky::NAME,
+        id: "cauchy-samples-better-sky",
+        words: "the procedural sky",
+    },
 ];
 
 /// The claim under one light.
@@ -46,8 +75,11 @@ const IN_EQUAL_TIME: Statement = Statement {
 /// Samples of a shading point over which its set-up is spread in the comparison of times.
 const PER_POINT: usize = 16;
 
-/// V on both models in a cell, under each light.
-type Pairs = [[Estimate; 2]; 5];
+/// V on both models in a cell, under each of [`LIGHTS`].
+type Pairs = [[Estimate; 2]; LIGHTS.len()];
+
+/// Numbers of a cell in the journal: of each model, light by light, V and its error.
+const NUMBERS: usize = 2 * 2 * LIGHTS.len();
 
 /// Measures every cell.
 fn measure(
@@ -58,12 +90,20 @@ fn measure(
     let cells: Vec<Cell> = plan.grid().cells().collect();
     let pairs = |cell: &Cell| {
         let find = || {
-            let v = variances(plan, plan.budget(), cell, &[Sampler::Published])?;
-            // Models outermost, then lights; a value and its error each.
-            Ok::<_, ParamError>(core::array::from_fn::<_, 20, _>(|place| {
-                let of = v[place / 2];
-                [of.value, of.standard_error][place % 2]
-            }))
+            let found = variances(plan, plan.budget(), cell, &[Sampler::Published])?;
+            let mut numbers = [f64::NAN; NUMBERS];
+            let places = ModelKind::ALL.map(|model| LIGHTS.map(|light| (model, light.name)));
+            for ([value, error], key) in numbers
+                .as_chunks_mut()
+                .0
+                .iter_mut()
+                .zip(places.as_flattened())
+            {
+                let row = found.iter().find(|of| (of.model, &*of.light) == *key);
+                let v = row.map_or(Estimate::UNKNOWN, |of| of.v);
+                (*value, *error) = (v.value, v.standard_error);
+            }
+            Ok::<_, ParamError>(numbers)
         };
         let numbers = journal.numbers(&format!("V in cell {}", cell.index), find)?;
         let of = |place: usize| Estimate {
@@ -83,10 +123,27 @@ pub(super) fn claims(
     journal: &Journal,
     progress: &Progress<'_>,
 ) -> Result<Vec<Claim>, Error> {
+    let (mut claims, means) = by_light(plan, journal, progress)?;
+    claims.push(in_time(plan, &means));
+    Ok(claims)
+}
+
+/// The claims under each light, and the geometric means of their ratios.
+pub(super) fn by_light(
+    plan: &Plan<'_>,
+    journal: &Journal,
+    progress: &Progress<'_>,
+) -> Result<(Vec<Claim>, Vec<Estimate>), Error> {
     let cells = measure(plan, journal, progress)?;
     let mut claims = Vec::new();
     let mut means = Vec::new();
-    for (light, [id, name]) in LIGHTS.into_iter().enumerate() {
+    for (
+        light,
+        ClaimedLight {
+            id, words: name, ..
+        },
+    ) in LIGHTS.into_iter().enumerate()
+    {
         let pairs = || cells.iter().map(move |cell| cell[light]);
         let ([mean, least, most], unsure) = gain(pairs())
             .map_or(([Estimate::UNKNOWN; 3], cells.len()), |gain| {
@@ -124,8 +181,7 @@ pub(super) fn claims(
         claims.push(Statement { id, ..STATEMENT }.judge(figures, sentence));
         means.push(mean);
     }
-    claims.push(in_time(plan, &means));
-    Ok(claims)
+    Ok((claims, means))
 }
 
 /// The claim in equal time.
@@ -145,7 +201,11 @@ fn in_time(plan: &Plan<'_>, means: &[Estimate]) -> Claim {
     let sentence = format!(
         "A sample of the Cauchy model takes {:.2} times less time here; in equal time its variance is lower by {:.2} under \
          {} and by {:.2} under {}.",
-        faster.value, gains[most].value, LIGHTS[most][1], gains[least].value, LIGHTS[least][1],
+        faster.value,
+        gains[most].value,
+        LIGHTS[most].words,
+        gains[least].value,
+        LIGHTS[least].words,
     );
     let mut figures = vec![
         timed(
@@ -161,7 +221,7 @@ fn in_time(plan: &Plan<'_>, means: &[Estimate]) -> Claim {
         gains
             .iter()
             .zip(LIGHTS)
-            .map(|(gain, [_, name])| timed(format!("gain in equal time, {name}"), *gain)),
+            .map(|(gain, light)| timed(format!("gain in equal time, {}", light.words), *gain)),
     );
     for (model, ns) in ModelKind::ALL.into_iter().zip([gaussian, cauchy]) {
         figures.push(Figure {

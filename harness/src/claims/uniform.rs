@@ -5,9 +5,12 @@ use super::claim::{Claim, Figure, Origin, Side, Statement};
 use super::{FoundCells, hair_of};
 use crate::journal::Journal;
 use crate::sampler::Sampler;
-use crate::study::{Cell, Grid, Plan, StudyBudget, variances};
+use crate::study::{Cell, Grid, Plan, variances};
 use crate::subject::ModelKind;
+use crate::variance::SampleBudget;
+use hairis::ParamError;
 use hairis_instruments::error::Error;
+use hairis_instruments::light::Constant;
 use hairis_instruments::stats::Estimate;
 
 const STATEMENT: Statement = Statement {
@@ -24,24 +27,32 @@ const STATEMENT: Statement = Statement {
 const NARROW: f32 = 10.0;
 
 /// The example: rough hair with wide glints, all else as in the default hair.
-fn example() -> Cell {
+pub(super) fn example() -> Cell {
     let is = |cell: &Cell| cell.values() == [20.0, 45.0, 20.0, 35.0, 0.5, 0.0];
     Grid::FULL.cells().find(is).expect("a cell of the grid")
 }
 
 /// V of uniform sampling and of the published sampler on the example, Gaussian model, from samples.
-fn measured(plan: &Plan<'_>, cell: &Cell, journal: &Journal) -> Result<[Estimate; 2], Error> {
+pub(super) fn measured(
+    plan: &Plan<'_>,
+    cell: &Cell,
+    journal: &Journal,
+) -> Result<[Estimate; 2], Error> {
     let budget = if plan.quick { 1 << 18 } else { 1 << 22 };
-    let budget = StudyBudget {
+    let budget = SampleBudget {
         samples: budget,
         light_samples: 8,
         pools: 0,
     };
     let of = |sampler: Sampler| {
         let key = format!("V of {} on the example", sampler.name());
-        // Models outermost, then lights: the constant light is the first.
-        let find =
-            || variances(plan, budget, cell, &[sampler]).map(|v| [v[0].value, v[0].standard_error]);
+        let find = || {
+            let all = variances(plan, budget, cell, &[sampler])?;
+            let mut rows = all.iter().filter(|of| of.model == ModelKind::Gaussian);
+            let row = rows.find(|of| of.light == Constant::NAME);
+            let v = row.map_or(Estimate::UNKNOWN, |of| of.v);
+            Ok::<_, ParamError>([v.value, v.standard_error])
+        };
         let [value, standard_error] = journal.numbers(&key, find)?;
         Ok::<_, Error>(Estimate {
             value,
@@ -137,7 +148,8 @@ mod tests {
         let plan = Plan {
             seed: 3,
             quick: true,
-            environment: &sky,
+            lights: (&sky).into(),
+            materials: &[],
         };
         let cell = example();
         let [uniform, published] = measured(&plan, &cell, &Journal::default()).expect("accepted");

@@ -4,6 +4,7 @@
 use super::{environment, print_tables, report_failures};
 use crate::args::Compare;
 use crate::compare::{self, CompareSettings};
+use crate::materials;
 use hairis_instruments::error::Error;
 use hairis_instruments::files::{writable, write_json};
 use hairis_instruments::program::say;
@@ -18,6 +19,7 @@ use std::fs;
 /// be written; [`Error::Failed`] at the end, with all files written, if a check failed.
 pub fn run(flags: &Compare) -> Result<(), Error> {
     let (environment, name) = environment(flags.env.as_deref(), flags.layer.as_deref())?;
+    let materials = materials::of_flags(&flags.model, &flags.material)?;
     fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
     let [json, page] = ["compare.json", "report.html"].map(|name| flags.out.join(name));
     writable(&json)?;
@@ -31,7 +33,7 @@ pub fn run(flags: &Compare) -> Result<(), Error> {
         environment: name,
         environment_notes,
     };
-    let comparison = compare::run(settings, &environment, &|part, done| {
+    let comparison = compare::run(settings, &environment, &materials, &|part, done| {
         if bar.message() != part {
             bar.reset();
             bar.set_message(part);

@@ -4,6 +4,7 @@ use super::{environment, print_tables, report_failures};
 use crate::args::Study as Flags;
 use crate::difference::Difference;
 use crate::journal::Journal;
+use crate::materials;
 use crate::study::output::Study;
 use crate::study::part::{Part, read};
 use crate::study::{self, Plan};
@@ -31,19 +32,22 @@ pub fn run(flags: &Flags) -> Result<(), Error> {
         .parse()
         .map_err(|problem| Error::Usage(format!("--shard {problem}")))?;
     let (environment, _) = environment(flags.env.as_deref(), flags.layer.as_deref())?;
+    let materials = materials::of_flags(&flags.model, &flags.material)?;
     let plan = Plan {
         seed: flags.seed,
         quick: flags.quick,
-        environment: &environment,
+        materials: &materials,
+        lights: (&environment).into(),
     };
-    let cells = plan.grid().len();
+    let header = plan.header(shard);
+    let cells = header.work();
     if shard.of() > cells {
         return Err(Error::Usage(format!(
             "--shard N must be at most {cells}, the number of cells, got \"{shard}\""
         )));
     }
     fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
-    let (part, finished) = Part::open(&flags.out, &plan.header(shard))?;
+    let (part, finished) = Part::open(&flags.out, &header)?;
 
     let mut todo: Vec<usize> = (0..cells).filter(|index| shard.owns(*index)).collect();
     let owned = todo.len();
@@ -101,7 +105,9 @@ pub(super) fn finish(
         .report(&difference, claims(out, &study).as_ref())
         .write(out, "study")?;
     let page = out.join("report.html");
-    print_tables(study.summary().iter().chain(&difference.tables()), &page)?;
+    let tables = study.summary().into_iter().chain(study.materials());
+    let tables: Vec<_> = tables.chain(difference.tables()).collect();
+    print_tables(tables.iter(), &page)?;
     let [rows, others @ ..] =
         ["study", "efficiency", "difference"].map(|name| out.join(name).display().to_string());
     let parquet = if cfg!(feature = "parquet") {
@@ -113,6 +119,9 @@ pub(super) fn finish(
         "wrote {rows}.csv{parquet}, {} as .csv{parquet}, and {rows}.json",
         others.join(" and ")
     ));
+    if study.has_materials() {
+        say(&format!("wrote {}", out.join("materials.csv").display()));
+    }
     say(&format!("wrote {} and figures/", page.display()));
     report_failures(&study.failures())
 }

@@ -1,6 +1,6 @@
 //! The plots of a comparison.
 
-use super::page::{THETA_O_DEG, v_gain};
+use super::query::{THETA_O_DEG, v_gain};
 use super::{Comparison, distinct};
 use crate::efficiency::SAMPLERS;
 use crate::figures;

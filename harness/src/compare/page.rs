@@ -1,14 +1,13 @@
 //! The report of a comparison.
 
-use super::tables::{self, Depth};
-use super::{CompareSettings, Comparison, charts, distinct, rays};
+use super::query::{Depth, predicted, v_gain};
+use super::{CompareSettings, Comparison, charts, distinct, rays, tables};
 use crate::efficiency::EfficiencyRow;
 use crate::lights::in_words;
 use crate::sampler::Sampler;
 use crate::speed::TimedOp;
 use crate::subject::ModelKind;
 use hairis_instruments::report::{Report, Section};
-use hairis_instruments::sequence::SequenceKind;
 use hairis_instruments::table::number;
 
 /// The page.
@@ -35,6 +34,8 @@ pub fn report(of: &Comparison) -> Report {
         )
         .figures(rays::chart(of))
         .tables(rays::tables(of, Depth::Full));
+    let materials = of.material_table();
+    let materials = materials.map(|table| Section::new("Other materials").tables([table]));
     let models = Section::new("The two models")
         .paragraph(
             "The published model is made of Gaussians of unit peak. The all-Cauchy variant replaces each by a Cauchy bell \
@@ -88,7 +89,12 @@ pub fn report(of: &Comparison) -> Report {
         verdicts: verdicts(of),
         summary: Some(charts::summary(of)),
         findings: findings(of),
-        sections: vec![speed, efficiency, chosen, models, agreement, method],
+        sections: [
+            vec![speed, efficiency, chosen],
+            materials.into_iter().collect(),
+            vec![models, agreement, method],
+        ]
+        .concat(),
     }
 }
 
@@ -146,32 +152,6 @@ fn change(ratio: f64) -> String {
         ratio if ratio > 0.5 => format!("{} more", number::percent(1.0 / ratio - 1.0)),
         ratio => format!("{} as many", number::ratio(1.0 / ratio)),
     }
-}
-
-/// Inclination of the viewer in the verdicts, degrees.
-pub(super) const THETA_O_DEG: f64 = 45.0;
-
-/// V of the published sampler on the Gaussian model over V of another estimator, seen from [`THETA_O_DEG`]: as measured where
-/// it can be, else as predicted.
-pub(super) fn v_gain(of: &Comparison, light: &str, other: (ModelKind, Sampler)) -> Option<f64> {
-    let v = |estimator| {
-        let row = of.efficiency.rows.iter().find(|row| {
-            (row.model, row.sampler) == estimator
-                && (row.sequence, row.theta_o_deg) == (SequenceKind::Independent, THETA_O_DEG)
-                && row.light == light
-        })?;
-        Some(if row.tested {
-            row.v.value
-        } else {
-            predicted(row, row.sampler)
-        })
-    };
-    Some(v((ModelKind::Gaussian, Sampler::Published))? / v(other)?)
-}
-
-/// V of a sampler as the reference of a row predicts it.
-pub(super) fn predicted(row: &EfficiencyRow, sampler: Sampler) -> f64 {
-    row.reference.predicted(sampler)[0]
 }
 
 /// Findings beyond the verdicts, in sentences with figures.

@@ -1,8 +1,8 @@
 //! Tables and the plot of one ray for many candidates.
 
 use super::Comparison;
-use super::tables::Depth;
-use crate::lights::in_words;
+use super::query::Depth;
+use crate::lights::{environment, in_words};
 use crate::rays::{
     EqualTime, HALF, OneRay, PRICES_US, RayRow, RayTimes, SIZES, VISIBLE, equal_time,
 };
@@ -37,7 +37,8 @@ fn measured(of: &Comparison) -> impl Iterator<Item = Measured<'_>> {
 }
 
 fn under_environment(of: &Comparison) -> impl Iterator<Item = Measured<'_>> {
-    let environment = of.efficiency.settings.lights.last();
+    let lights = &of.efficiency.settings.lights;
+    let environment = environment(lights).map(|place| &lights[place]);
     measured(of).filter(move |(row, ..)| Some(&row.light) == environment)
 }
 

@@ -1,6 +1,6 @@
 //! The tables of a comparison: the same for the terminal and for the page, which has more rows.
 
-use super::page::predicted;
+use super::query::{Depth, predicted};
 use super::{Comparison, distinct, rays};
 use crate::agreement::{AgreementResult, Quantity, Region};
 use crate::efficiency::{EfficiencyRow, MisRow, SAMPLERS, Technique};
@@ -11,15 +11,6 @@ use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::{Table, number};
 use hairis_variants::ModelId;
 
-/// Extent of a set of tables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Depth {
-    /// The rows that fit a terminal.
-    Summary,
-    /// All of it.
-    Full,
-}
-
 /// The tables that fit a terminal.
 #[must_use]
 pub fn summary(of: &Comparison) -> Vec<Table> {
@@ -29,6 +20,7 @@ pub fn summary(of: &Comparison) -> Vec<Table> {
         vec![agreement(of, depth)],
         efficiency(of, depth),
         rays::tables(of, depth),
+        of.material_table().into_iter().collect(),
     ]
     .concat()
 }

@@ -8,10 +8,11 @@ use super::{
     BETA_R_DEG, CONVERGENCE_THETA_O_DEG, EfficiencyConfig, FALSE_ALARM, ModelKind, PHI_O_DEG,
     Reference, SAMPLERS, THETA_O_DEG, with_beta,
 };
-use crate::lights::{AREA, CONSTANT, ENVIRONMENT, SUN, SUN_DEG, lights};
+use crate::lights::SUN_DEG;
 use crate::sampler::Sampler;
 use core::f64::consts::SQRT_2;
 use hairis::{HairParams, ParamError};
+use hairis_instruments::light::{Constant, Rectangle, Sun};
 use hairis_instruments::progress::Progress;
 use hairis_instruments::sequence::SequenceKind;
 use hairis_instruments::stats::{Estimate, sidak};
@@ -28,7 +29,7 @@ pub fn run(
     config: &EfficiencyConfig<'_>,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<EfficiencyResult, ParamError> {
-    let lights = lights(Some(config.environment));
+    let lights = config.lights.all();
     let poses = product(&ModelKind::ALL, &THETA_O_DEG);
     let of_hair = |params: &HairParams| -> Vec<Case> {
         poses
@@ -65,17 +66,16 @@ pub fn run(
 
     let budget = &config.budget;
     let references: Vec<Reference> = progress.map(&lit_cases, |&(case, light)| {
-        if light == ENVIRONMENT {
-            let passes = budget.reference_passes;
-            of_environment(
+        let light = lights[light];
+        match config.lights.as_environment(light) {
+            Some(map) => of_environment(
                 case,
-                config.environment,
+                map,
                 budget.quadrature_texels,
-                passes,
+                budget.reference_passes,
                 config.seed,
-            )
-        } else {
-            by_quadrature(case, lights[light])
+            ),
+            None => by_quadrature(case, light),
         }
     });
     let place = |(&(case, index), reference)| Place {
@@ -86,23 +86,24 @@ pub fn run(
         reference,
     };
     let places: Vec<Place<'_>> = lit_cases.iter().zip(&references).map(place).collect();
-    let under = |shown: &[usize]| -> Vec<Place<'_>> {
+    let is_environment = |place: &Place<'_>| config.lights.as_environment(place.light).is_some();
+    let under = |shown: &[&str]| -> Vec<Place<'_>> {
         places
             .iter()
-            .filter(|place| shown.contains(&place.index))
+            .filter(|place| shown.contains(&place.light.name()) || is_environment(place))
             .copied()
             .collect()
     };
-    let mut converging = under(&[CONSTANT, AREA, ENVIRONMENT]);
+    let mut converging = under(&[Constant::NAME, Rectangle::NAME]);
     converging.retain(|place| place.case.theta_o_deg == CONVERGENCE_THETA_O_DEG);
     // Under a sun that few samples ever see, a curve of convergence shows which of its points have seen it.
     let is_steady = |place: &Place<'_>| place.reference.v.iter().all(|v| *v < CONVERGENCE_V);
     if !converging
         .iter()
-        .filter(|place| place.index == ENVIRONMENT)
+        .filter(|place| is_environment(place))
         .all(is_steady)
     {
-        converging.retain(|place| place.index != ENVIRONMENT);
+        converging.retain(|place| !is_environment(place));
     }
 
     let row_cells = product(&places, &estimators);
@@ -110,7 +111,7 @@ pub fn run(
         place.row(sampler, sequence)
     });
     let mis_rows = progress.map(
-        &product(&under(&[SUN, AREA, ENVIRONMENT]), &techniques),
+        &product(&under(&[Sun::NAME, Rectangle::NAME]), &techniques),
         |&(place, technique)| place.mis_row(technique),
     );
     let convergence = progress.map(
@@ -124,7 +125,7 @@ pub fn run(
         .iter()
         .zip(&rows)
         .filter(|((place, (_, sequence)), _)| {
-            (place.index, *sequence) == (CONSTANT, SequenceKind::Independent)
+            (place.light.name(), *sequence) == (Constant::NAME, SequenceKind::Independent)
         });
     let measured: Vec<(&Case, Sampler, Estimate)> = constant
         .map(|((place, _), row)| (place.case, row.sampler, row.v))

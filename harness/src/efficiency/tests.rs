@@ -6,8 +6,8 @@ use super::measure::{CellMoments, bias_z, is_tested, moments};
 use super::reference::{by_quadrature, exact_variance};
 use super::result::Technique;
 use super::*;
-use crate::lights::{SUN, lights};
-use hairis_instruments::light::{Constant, Light};
+use crate::lights::Lights;
+use hairis_instruments::light::{Constant, Environment, Light, Sky, Sun};
 use hairis_instruments::sequence::{Independent, SequenceKind, XiSource};
 use hairis_instruments::stats::{Estimate, Moments};
 use std::sync::{Mutex, OnceLock};
@@ -120,7 +120,7 @@ fn measured_variance_is_that_of_quadrature_and_of_the_table() {
 
 #[test]
 fn every_estimator_agrees_with_quadrature() {
-    let lights = lights(None);
+    let lights = Lights::default().all();
     let theta_o = [45.0, 75.0];
     let mut worst = 0.0_f64;
     for (k, light) in lights.into_iter().enumerate() {
@@ -129,7 +129,11 @@ fn every_estimator_agrees_with_quadrature() {
             let reference = by_quadrature(&case, light);
             for (t, technique) in Technique::all().enumerate() {
                 // 1e6 samples hit the sun about 480 times.
-                let n = if k == SUN { 1_000_000 } else { 200_000 };
+                let n = if light.name() == Sun::NAME {
+                    1_000_000
+                } else {
+                    200_000
+                };
                 let tally = independent(&case, technique, light, [31, (16 * k + t) as u64], n);
                 let z = bias_z(&tally.moments, reference.estimate());
                 worst = worst.max(z.abs());
@@ -162,8 +166,12 @@ fn every_estimator_agrees_with_quadrature() {
 #[test]
 fn the_sun_is_for_light_sampling_and_the_rest_for_both() {
     let case = Case::new(ModelKind::Gaussian, &HairParams::bright(), 45.0);
+    let mut lights = Lights::default().all().into_iter();
+    let sun = lights
+        .find(|light| light.name() == Sun::NAME)
+        .expect("listed");
     let v = |technique: Technique| {
-        let tally = independent(&case, technique, lights(None)[SUN], [41, 0], 100_000);
+        let tally = independent(&case, technique, sun, [41, 0], 100_000);
         tally.moments.relative_variance().value * technique.samples_each() as f64
     };
     assert!(
@@ -405,7 +413,7 @@ fn ten_hits_that_carry_a_fifth_of_the_mean_are_too_few() {
 #[test]
 #[ignore = "slow: 100 s of processor time in release"]
 fn a_full_run_under_the_sky_passes_its_check() {
-    let sky = hairis_instruments::light::Sky::default().environment();
+    let sky = Sky::default().environment();
     let result = run(&EfficiencyConfig::new(2, false, &sky), &|_, _| ()).expect("valid");
     assert!(result.check.passed(), "{:#?}", result.check);
     // Directions from the BSDF meet a sun off the highlights once in a thousand samples or less: V is up to 40,000, and two
@@ -416,7 +424,7 @@ fn a_full_run_under_the_sky_passes_its_check() {
         .iter()
         .filter(|r| r.sequence == SequenceKind::Independent)
         .collect();
-    let has_sun = |r: &EfficiencyRow| r.light == "sun" || r.light == "clear sky";
+    let has_sun = |r: &EfficiencyRow| [Sun::NAME, Sky::NAME].contains(&&*r.light);
     let untested: Vec<_> = independent.iter().filter(|r| !r.tested).collect();
     let wrong: Vec<_> = untested
         .iter()

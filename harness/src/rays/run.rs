@@ -3,8 +3,8 @@
 use super::result::{RayFigures, RayPose, RayRow, RaysResult};
 use super::{EqualTime, Lit, RaySubject, measure, times};
 use crate::efficiency::{Check, EfficiencyResult, THETA_O_DEG, intensity, stratified};
-use crate::lights::lights;
-use hairis_instruments::light::{Environment, Light, product};
+use crate::lights::Lights;
+use hairis_instruments::light::{Light, product};
 use hairis_instruments::progress::Progress;
 use hairis_instruments::sequence::stream_id;
 use hairis_instruments::stats::Estimate;
@@ -21,21 +21,21 @@ pub struct RaysConfig<'a> {
     pub passes: usize,
     /// Rounds of the times.
     pub rounds: usize,
-    /// The environment light.
-    pub environment: &'a Environment,
+    /// The lights.
+    pub lights: Lights<'a>,
 }
 
 impl<'a> RaysConfig<'a> {
     /// The sizes of the command line.
     #[must_use]
-    pub const fn new(seed: u64, quick: bool, environment: &'a Environment) -> Self {
+    pub fn new(seed: u64, quick: bool, lights: impl Into<Lights<'a>>) -> Self {
         let [pools, passes, rounds] = if quick { [256, 16, 9] } else { [4096, 64, 31] };
         Self {
             seed,
             pools,
             passes,
             rounds,
-            environment,
+            lights: lights.into(),
         }
     }
 }
@@ -54,7 +54,7 @@ pub fn run(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> RaysResult {
     let subjects: Vec<RaySubject> = RaySubject::all().collect();
-    let lights = lights(Some(config.environment));
+    let lights = config.lights.all();
     let cells = subjects.len() * lights.len();
     let times = times::measure(&subjects, &lights, config.seed, config.rounds, |done| {
         progress(done, 2 * cells)

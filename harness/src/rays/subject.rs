@@ -3,10 +3,10 @@
 use crate::efficiency::{PHI_O_DEG, THETA_O_DEG};
 use crate::sampler::{Sampler, Scatter};
 use glam::Vec3;
-use hairis::Hit;
+use hairis::{Hit, ParamError};
 use hairis_instruments::direction::fibre_direction;
 use hairis_reference::{Reference, reference};
-use hairis_variants::ModelId;
+use hairis_variants::{ModelId, Values};
 
 /// Offset of the ray from the fibre's axis, for models that read it, by place in [`THETA_O_DEG`].
 const OFFSETS: [f32; 4] = [0.0, 0.5, -0.75, 0.25];
@@ -32,6 +32,36 @@ impl RaySubject {
             }])
         };
         ModelId::ALL.iter().copied().flat_map(with_uniform)
+    }
+
+    /// Every sampler of the model of an entry of the list, uniform directions first.
+    pub(crate) fn of_model(model: ModelId) -> impl Iterator<Item = Self> {
+        let uniform = Self {
+            id: model,
+            is_uniform: true,
+        };
+        let entries = ModelId::ALL.iter().copied();
+        let own = entries.filter(move |id| id.name() == model.name());
+        let own = own.map(|id| Self {
+            id,
+            is_uniform: false,
+        });
+        [uniform].into_iter().chain(own)
+    }
+
+    /// The entry of the list, unless directions are uniform.
+    pub(crate) fn own(self) -> Option<ModelId> {
+        (!self.is_uniform).then_some(self.id)
+    }
+
+    /// A material at a hit.
+    ///
+    /// # Errors
+    ///
+    /// If a value is out of its range.
+    pub(crate) fn at(self, values: &Values, hit: Hit) -> Result<Scatter, ParamError> {
+        let material = self.id.material(values)?;
+        Ok(Scatter::at(material.prepare(hit), self.is_uniform))
     }
 
     /// Name of the model.
@@ -67,11 +97,8 @@ impl RaySubject {
     /// Never: default parameters are within their ranges.
     pub(super) fn scatter(self, pose: usize) -> Scatter {
         let hit = Hit::new(viewer(pose), OFFSETS[pose]);
-        let bsdf = self
-            .id
-            .material(&self.id.measured())
-            .expect("defaults are accepted");
-        Scatter::at(bsdf.prepare(hit), self.is_uniform)
+        self.at(&self.id.measured(), hit)
+            .expect("defaults are accepted")
     }
 
     /// The formulas of the same in double precision.

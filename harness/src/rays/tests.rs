@@ -5,7 +5,6 @@ use super::measure::pose;
 use super::result::occluded;
 use super::*;
 use crate::efficiency::{self, Budget, EfficiencyConfig, EfficiencyResult, THETA_O_DEG};
-use crate::lights::lights;
 use hairis_instruments::light::{Environment, Light, Sky};
 use hairis_instruments::sequence::{Independent, XiSource};
 use hairis_instruments::stats::Estimate;
@@ -51,7 +50,7 @@ fn rows(
     run::rows(
         config,
         subjects,
-        &lights(Some(config.environment)),
+        &config.lights.all(),
         references,
         &|_, _| (),
     )

@@ -6,7 +6,7 @@
 
 use super::candidates::{Candidates8, LightBlock, Lit, numbers};
 use super::{MOST, RAYS, RaySubject, SIZES};
-use crate::study::in_turns;
+use crate::timer::in_turns;
 use core::hint::black_box;
 use hairis::resample::choose;
 use hairis_instruments::light::Light;

@@ -1,6 +1,7 @@
 //! Throughput by number of threads: slices in chunks through rayon.
 
-use super::{TimedInputs, TimedOp, quartiles};
+use super::{TimedInputs, TimedOp};
+use crate::timer::quartiles;
 use core::hint::black_box;
 use hairis::ParamError;
 use hairis::columns::{EvalColumns, SampleColumns};

@@ -5,9 +5,10 @@
 
 pub use crate::sealed::line;
 
-use super::cell::Measured;
-use super::tally::Figures;
+use super::grid::Grid;
+use crate::materials::MaterialKey;
 use crate::sealed::unseal;
+use crate::variance::{Figures, Measured};
 use hairis_instruments::appended::Appended;
 use hairis_instruments::error::Error;
 use hairis_instruments::light::Environment;
@@ -53,6 +54,9 @@ pub struct Header {
     pub lights: Vec<String>,
     /// Cells of the grid.
     pub cells: usize,
+    /// Materials beside the hair of the grid, whose cells follow; none in earlier versions.
+    #[serde(default)]
+    pub materials: Vec<MaterialKey>,
     /// The part, as `I/N`.
     pub shard: String,
 }
@@ -69,10 +73,40 @@ impl Header {
         self.models.len() * (self.samplers.len() + 1) * self.lights.len()
     }
 
+    /// Cells of the grid and of the materials.
+    #[must_use]
+    pub fn work(&self) -> usize {
+        let poses = Grid::of(self.quick).theta_o_deg.len();
+        self.cells.saturating_add(poses * self.materials.len())
+    }
+
+    /// Rows of the cell with this number.
+    fn rows_of(&self, cell: usize) -> usize {
+        let Some(place) = cell.checked_sub(self.cells) else {
+            return self.rows();
+        };
+        let poses = Grid::of(self.quick).theta_o_deg.len();
+        let material = self.materials.get(place / poses);
+        material.map_or(0, |key| (key.samplers.len() + 1) * self.lights.len())
+    }
+
     /// The first field in which `other` differs, with its value here and there, if one does; the shard may.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Option<[String; 3]> {
-        let [ours, theirs] = [self, other].map(|of| serde_json::to_value(of).unwrap_or_default());
+        let fields = |of: &Self| {
+            let mut fields = serde_json::to_value(of).unwrap_or_default();
+            // In a line of text their names say enough, unless they are the same.
+            if self
+                .materials
+                .iter()
+                .map(|key| &key.name)
+                .ne(other.materials.iter().map(|key| &key.name))
+            {
+                fields["materials"] = of.materials.iter().map(|key| &*key.name).collect();
+            }
+            fields
+        };
+        let [ours, theirs] = [self, other].map(fields);
         ours.as_object()?
             .iter()
             .filter(|(name, _)| *name != "shard")
@@ -103,7 +137,7 @@ const NUMBERS: usize = 15;
 /// the bias of pools. What is no number is `None`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finished {
-    /// Place of the cell in the grid.
+    /// Place of the cell in the grid, or behind it.
     pub cell: usize,
     /// Its rows: models outermost, then samplers, then lights; after them those of perfect sampling, models, then lights.
     pub rows: Vec<[Option<f64>; NUMBERS]>,
@@ -249,17 +283,17 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Option<Read>, Error> {
             return Err(damaged("its checksum is wrong"));
         }
         let cell: Finished = serde_json::from_slice(&line).map_err(|_| damaged("not a cell"))?;
-        if cell.cell >= header.cells || !shard.owns(cell.cell) {
+        if cell.cell >= header.work() || !shard.owns(cell.cell) {
             return Err(damaged(&format!(
                 "cell {} is not of shard {shard}",
                 cell.cell
             )));
         }
-        if cell.rows.len() != header.rows() {
+        if cell.rows.len() != header.rows_of(cell.cell) {
             return Err(damaged(&format!(
                 "{} rows, expected {}",
                 cell.rows.len(),
-                header.rows()
+                header.rows_of(cell.cell)
             )));
         }
         finished.push(cell);

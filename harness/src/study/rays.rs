@@ -1,71 +1,12 @@
-//! One ray of direct light in a cell: by one-sample MIS, and chosen from candidates; see [`rays`](crate::rays).
+//! Times of one ray of direct light, and gains over one-sample MIS in equal time; see [`rays`](crate::rays).
 
-use super::cell::Measured;
 use super::equal_time::time_ratio;
-use super::output::Study;
+use super::finished::Study;
 use super::rows::Row;
-use crate::rays::{HALF, PRICES_US, VISIBLE, occluded};
+use crate::rays::PRICES_US;
+use crate::variance::{By, MIS, POOLS, RAYS, half_visible};
 use hairis_instruments::columns::Columns;
 use hairis_instruments::stats::Estimate;
-
-/// Candidates of each technique in a pool.
-pub(super) const SIZES: [u32; 2] = [4, 8];
-
-/// Estimator of a ray: the name in tables, the name in columns, and the candidates of each technique, if it chooses.
-pub(super) struct By {
-    pub(super) name: &'static str,
-    column: &'static str,
-    pub(super) candidates_each: Option<u32>,
-}
-
-/// The estimators of a ray: one-sample MIS, and choices from pools of [`SIZES`].
-pub(super) const RAYS: [By; 1 + SIZES.len()] = [
-    By {
-        name: "MIS",
-        column: "mis",
-        candidates_each: None,
-    },
-    By {
-        name: "4 + 4",
-        column: "4_4",
-        candidates_each: Some(SIZES[0]),
-    },
-    By {
-        name: "8 + 8",
-        column: "8_8",
-        candidates_each: Some(SIZES[1]),
-    },
-];
-
-/// Places in [`RAYS`] of one-sample MIS and of the pools.
-pub(super) const MIS: usize = 0;
-pub(super) const POOLS: [usize; SIZES.len()] = [1, 2];
-
-/// V of one ray without occlusion, by place in [`RAYS`]; not a number where there is none.
-pub(super) fn v(measured: &Measured, by: usize) -> Estimate {
-    measured.rays.map_or(Estimate::UNKNOWN, |rays| rays[by])
-}
-
-/// V with half of the directions visible.
-pub(super) fn half_visible(measured: &Measured, by: usize) -> Estimate {
-    occluded(v(measured, by), HALF)
-}
-
-/// Adds the columns of V.
-pub(super) fn columns(mut columns: Columns, rows: &[Row<'_>]) -> Columns {
-    for (by, By { column, .. }) in RAYS.iter().enumerate() {
-        let v = || rows.iter().map(move |row| v(row.measured, by));
-        columns = columns.estimate(&format!("v_{column}"), v());
-        for share in VISIBLE {
-            let name = format!("v_{column}_visible_{:.0}", 100.0 * share);
-            columns = columns.number(name, v().map(|v| occluded(v, share).value));
-        }
-    }
-    columns.number(
-        "pool_bias",
-        rows.iter().map(|row| row.measured.bias.unwrap_or(f64::NAN)),
-    )
-}
 
 /// Adds the columns of times and of gains over one-sample MIS in equal time, half of the directions visible.
 pub(super) fn efficiencies(mut columns: Columns, rows: &[Row<'_>], study: &Study) -> Columns {

@@ -6,7 +6,7 @@ mod looks;
 mod rays;
 mod tables;
 
-use super::output::Study;
+use super::finished::Study;
 use crate::difference::{Difference, SIGMA_DEG};
 use hairis_instruments::machine;
 use hairis_instruments::report::{Report, Section};
@@ -35,6 +35,8 @@ impl Study {
         let claims = claims.and_then(tables::claims);
         let method = self.method(claims.is_some());
         let mut sections = self.sections(difference);
+        let materials = self.materials();
+        sections.extend(materials.map(|table| Section::new("Other materials").tables([table])));
         sections.extend(claims.map(|table| Section::new("The paper's claims").tables([table])));
         sections.push(method);
         Report {
@@ -45,6 +47,12 @@ impl Study {
             findings: findings::findings(self, difference),
             sections,
         }
+    }
+
+    /// How far sampling of the hair can go under the environment.
+    #[cfg(test)]
+    pub(crate) fn limit_in_words(&self) -> Option<String> {
+        findings::limit(self)
     }
 
     fn sections(&self, difference: &Difference) -> Vec<Section> {

@@ -1,48 +1,13 @@
 //! The rows of a study, as columns.
 
-use super::cell::Measured;
+use super::estimator::{Estimator, name, on_each_model, place, strategies};
+use super::finished::Study;
 use super::grid::{Cell, columns_of};
-use super::output::Study;
-use super::rays;
-use crate::sampler::{Sampler, weight_bound};
-use crate::subject::ModelKind;
+use crate::materials::{self, MaterialRow};
+use crate::variance::{Measured, figures_of};
 use hairis_instruments::columns::Columns;
+use hairis_instruments::light::Constant;
 use hairis_instruments::stats::Estimate;
-
-/// The sampler of a row; `None`: perfect sampling of the hair, see [`perfect`](super::perfect).
-pub(super) type Strategy = Option<Sampler>;
-
-/// A model, and how its directions are drawn.
-pub(super) type Estimator = (ModelKind, Strategy);
-
-/// Every strategy, in the order of reports.
-pub(super) fn strategies() -> impl Iterator<Item = Strategy> + Clone {
-    samplers().chain([None])
-}
-
-/// Samplers that can be run.
-pub(super) fn samplers() -> impl Iterator<Item = Strategy> + Clone {
-    Sampler::ALL.into_iter().map(Some)
-}
-
-/// Each of some strategies on each model.
-pub(super) fn on_each_model(
-    of: impl Iterator<Item = Strategy> + Clone,
-) -> impl Iterator<Item = Estimator> + Clone {
-    ModelKind::ALL
-        .into_iter()
-        .flat_map(move |model| of.clone().map(move |strategy| (model, strategy)))
-}
-
-/// Name in reports and in rows.
-pub(super) fn name(strategy: Strategy) -> &'static str {
-    strategy.map_or("perfect", Sampler::name)
-}
-
-/// The published sampler of the same model, which gains are measured against.
-pub(super) const fn published((model, _): Estimator) -> Estimator {
-    (model, Some(Sampler::Published))
-}
 
 /// A row: its identity and its figures.
 #[derive(Clone, Copy)]
@@ -60,33 +25,16 @@ impl Row<'_> {
     }
 }
 
-/// Place of a row within its cell: perfect sampling comes after all samplers of all models.
-const fn place((model, strategy): Estimator, light: usize, lights: usize) -> usize {
-    let line = match strategy {
-        Some(sampler) => model as usize * Sampler::ALL.len() + sampler as usize,
-        None => ModelKind::ALL.len() * Sampler::ALL.len() + model as usize,
-    };
-    line * lights + light
-}
-
-/// Sets the proven bounds on the weights in a cell: they depend on no light.
-pub(super) fn set_bounds(cell: &Cell, measured: &mut [Measured], lights: usize) {
-    let (params, theta_o) = (cell.params().ok(), f64::from(cell.theta_o_deg).to_radians());
-    for (model, strategy) in on_each_model(samplers()) {
-        let bound = strategy
-            .zip(params.as_ref())
-            .and_then(|(of, params)| weight_bound(model, of, params, theta_o));
-        let first = place((model, strategy), 0, lights);
-        measured[first..first + lights]
-            .iter_mut()
-            .for_each(|row| row.weight_bound = bound);
-    }
-}
-
 impl Study {
     /// Names of the lights.
     pub(super) fn lights(&self) -> &[String] {
         &self.header.lights
+    }
+
+    /// Place of the constant light: the first, if parts without one were read.
+    pub(super) fn constant(&self) -> usize {
+        let mut names = self.lights().iter();
+        names.position(|name| name == Constant::NAME).unwrap_or(0)
     }
 
     /// The row of one estimator under one light in a cell.
@@ -151,26 +99,28 @@ impl Study {
     #[must_use]
     pub fn columns(&self) -> Columns {
         let rows = self.rows();
-        let figures = |of: fn(&Measured) -> f64| rows.iter().map(move |row| of(row.measured));
-        let columns = self
-            .keys(&rows)
-            .estimate("mean", rows.iter().map(|row| row.measured.figures.mean))
-            .estimate("v", rows.iter().map(Row::v))
-            .number(
-                "ess_per_1000",
-                figures(|m| 1_000.0 / (1.0 + m.figures.v.value)),
-            )
-            .number(
-                "samples_for_1_percent",
-                figures(|m| m.figures.v.value * 1e4),
-            )
-            .number("max_weight", figures(|m| m.max_weight))
-            .number(
-                "weight_bound",
-                figures(|m| m.weight_bound.unwrap_or(f64::NAN)),
-            )
-            .number("max_contribution", figures(|m| m.max_contribution))
-            .estimate("kl", rows.iter().map(|row| row.measured.figures.kl));
-        rays::columns(columns, &rows)
+        let measured: Vec<&Measured> = rows.iter().map(|row| row.measured).collect();
+        figures_of(self.keys(&rows), &measured)
+    }
+
+    /// Every row of the materials: materials outermost, then inclinations, samplers and lights.
+    pub(super) fn material_rows(&self) -> Vec<MaterialRow<'_>> {
+        let inclinations = self.grid().theta_o_deg;
+        let keys = self.header.materials.iter().flat_map(|key| {
+            let pose = move |theta_o: &f32| (key, f64::from(*theta_o));
+            inclinations.iter().map(pose)
+        });
+        let rows = keys.zip(&self.materials);
+        rows.flat_map(|((key, theta_o), measured)| {
+            materials::rows(key, self.lights(), theta_o, measured)
+        })
+        .collect()
+    }
+
+    /// The rows of the materials: `material`, `model`, `theta_o_deg` in degrees, `sampler` and `light`, then the figures of
+    /// [`columns`](Self::columns).
+    #[must_use]
+    pub fn material_columns(&self) -> Columns {
+        materials::columns(&self.material_rows())
     }
 }

@@ -2,12 +2,14 @@
 //! in how many cells.
 
 use super::equal_time::count_cells;
-use super::output::Study;
-use super::rows::{Estimator, Strategy, on_each_model, published, samplers, strategies};
+use super::estimator::{Estimator, Strategy, on_each_model, published, samplers, strategies};
+use super::finished::Study;
 use super::times::PER_POINT;
-use super::view::{Counted, MAX_RELATIVE_ERROR, sure_ratio};
+use super::view::{Counted, sure_ratio};
+use crate::materials;
 use crate::sampler::Sampler;
 use crate::subject::ModelKind;
+use crate::variance::MAX_RELATIVE_ERROR;
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::{Table, number};
 
@@ -80,6 +82,13 @@ impl Study {
             self.gains_in_time(in_time, &models, Counted::Sample)
                 .note(&*timed),
         ]
+    }
+
+    /// The table of the materials beside the hair of the grid, if there are any.
+    #[must_use]
+    pub fn materials(&self) -> Option<Table> {
+        let rows = self.material_rows();
+        (!rows.is_empty()).then(|| materials::table(&rows))
     }
 
     /// Gains in V.

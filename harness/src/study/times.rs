@@ -8,11 +8,11 @@
 //! importance sampling needs it. They are so many, and spread so far, that an environment is read as by a render: from
 //! whatever cache holds all of it.
 
-use crate::lights::lights;
+use crate::lights::Lights;
 use crate::rays::{RaySubject, RayTimes, measure_times, numbers};
 use crate::sampler::{Sampler, material, uniform_sample8, uniform8};
-use crate::speed::{median_error, quartiles, stretch};
 use crate::subject::ModelKind;
+use crate::timer::{TimeSpread, in_turns, stretch};
 use core::hint::black_box;
 use hairis::{Eval8, HairParams, Sample8, Vec3x8};
 use hairis_benches::task::{Pass, task};
@@ -36,55 +36,12 @@ const PACKETS: usize = 64;
 const LOOK_UP_PACKETS: usize = 512;
 
 /// Timed operation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 enum Timed {
     /// A sample of a model by a sampler, with so many per shading point.
     Sample(ModelKind, Sampler, usize),
-    /// A look-up of the light at this place.
-    LookUp(usize),
-}
-
-/// A time in ns over the rounds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct TimeSpread {
-    /// First quartile, median and third quartile.
-    quartiles: [f64; 3],
-    /// Standard error of the median: that of a normal spread of the same quartiles.
-    standard_error: f64,
-}
-
-impl TimeSpread {
-    /// The median.
-    pub(crate) const fn median(&self) -> Estimate {
-        Estimate {
-            value: self.quartiles[1],
-            standard_error: self.standard_error,
-        }
-    }
-}
-
-/// Times contenders in turn, in an order that changes from round to round; `time` gives the ns of a stretch of one.
-pub(crate) fn in_turns<C>(
-    contenders: &mut [C],
-    rounds: usize,
-    mut time: impl FnMut(&mut C) -> f64,
-) -> Vec<TimeSpread> {
-    let count = contenders.len();
-    let mut ns = vec![Vec::with_capacity(rounds); count];
-    for round in 0..rounds {
-        for k in 0..count {
-            let k = (k + round) % count;
-            ns[k].push(time(&mut contenders[k]));
-        }
-    }
-    let spread = |ns: &Vec<f64>| {
-        let quartiles = quartiles(ns);
-        TimeSpread {
-            quartiles,
-            standard_error: median_error(quartiles, rounds),
-        }
-    };
-    ns.iter().map(spread).collect()
+    /// A look-up of the light of this name.
+    LookUp(String),
 }
 
 /// Times of a sample, of a look-up of the light and, on request, of a ray without its tracing, measured on this machine.
@@ -100,7 +57,7 @@ impl Times {
     #[must_use]
     pub fn measure(seed: u64, quick: bool, environment: Option<&Environment>) -> Self {
         let rounds = if quick { 15 } else { 75 };
-        let of_samples = measure(seed, rounds, &lights(environment));
+        let of_samples = measure(seed, rounds, &Lights::from(environment).all());
         Self {
             of_samples,
             of_rays: Vec::new(),
@@ -117,43 +74,44 @@ impl Times {
         };
         let subjects: Vec<RaySubject> = RaySubject::all().filter(is_measured).collect();
         let rounds = if quick { 9 } else { 75 };
-        let of_rays = measure_times(&subjects, &lights(environment), seed, rounds, |_| ());
+        let of_rays = measure_times(
+            &subjects,
+            &Lights::from(environment).all(),
+            seed,
+            rounds,
+            |_| (),
+        );
         Self { of_rays, ..self }
     }
 
     /// Median in ns; not a number if it was not measured.
-    fn median(&self, of: Timed) -> Estimate {
+    fn median(&self, of: &Timed) -> Estimate {
         self.of_samples
             .iter()
-            .find(|(timed, _)| *timed == of)
+            .find(|(timed, _)| timed == of)
             .map_or(Estimate::UNKNOWN, |(_, time)| time.median())
     }
 
     /// Median time of a sample in ns, for 1, 4 or 16 samples per shading point; not a number for others.
     pub(crate) fn ns(&self, model: ModelKind, sampler: Sampler, per_point: usize) -> Estimate {
-        self.median(Timed::Sample(model, sampler, per_point))
+        self.median(&Timed::Sample(model, sampler, per_point))
     }
 
-    /// Median time of a look-up of the light at this place in ns; not a number if it was not measured.
-    pub(super) fn look_up(&self, light: usize) -> Estimate {
-        self.median(Timed::LookUp(light))
+    /// Median time of a look-up of the light of this name in ns; not a number if it was not measured.
+    pub(super) fn look_up(&self, light: &str) -> Estimate {
+        self.median(&Timed::LookUp(light.to_owned()))
     }
 
     /// The table of times of samples and look-ups; what does not apply to a row is empty.
-    pub(super) fn columns(&self, lights: &[String]) -> Columns {
-        let words = |(of, _): &(Timed, TimeSpread)| match *of {
+    pub(super) fn columns(&self) -> Columns {
+        let words = |(of, _): &(Timed, TimeSpread)| match of {
             Timed::Sample(model, sampler, per_point) => [
                 model.name().to_owned(),
                 sampler.name().to_owned(),
                 per_point.to_string(),
                 String::new(),
             ],
-            Timed::LookUp(light) => [
-                String::new(),
-                String::new(),
-                String::new(),
-                lights[light].clone(),
-            ],
+            Timed::LookUp(light) => [String::new(), String::new(), String::new(), light.clone()],
         };
         let word = |k: usize| {
             self.of_samples
@@ -199,7 +157,7 @@ fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeS
         }
     }
     let seen = directions(&mut from);
-    contenders.extend(lights.iter().enumerate().map(|(place, light)| {
+    contenders.extend(lights.iter().map(|light| {
         let pass: Box<dyn Pass + '_> = task(&seen, |wi| {
             let Seen8 {
                 radiance: value,
@@ -207,7 +165,7 @@ fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeS
             } = light.see8(wi);
             Eval8 { value, pdf }
         });
-        (Timed::LookUp(place), pass, 2)
+        (Timed::LookUp(light.name().to_owned()), pass, 2)
     }));
     let times = in_turns(&mut contenders, rounds, |(of, pass, passes)| {
         let directions = match of {
@@ -218,7 +176,11 @@ fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeS
         stretch(&mut **pass, 1);
         stretch(&mut **pass, *passes) / (f64::from(*passes) * (8 * directions) as f64)
     });
-    contenders.iter().map(|(of, ..)| *of).zip(times).collect()
+    contenders
+        .into_iter()
+        .map(|(of, ..)| of)
+        .zip(times)
+        .collect()
 }
 
 /// Directions of the published sampler on the default hair, sixteen per shading point.
@@ -307,8 +269,8 @@ mod tests {
                 q1 > 0.0 && q1 <= median && median <= q3 && time.standard_error >= 0.0,
                 "{time:?}"
             );
-            let found = match *of {
-                Timed::Sample(model, sampler, per_point) => times.ns(model, sampler, per_point),
+            let found = match of {
+                Timed::Sample(model, sampler, per_point) => times.ns(*model, *sampler, *per_point),
                 Timed::LookUp(light) => times.look_up(light),
             };
             assert_eq!(
@@ -326,7 +288,7 @@ mod tests {
                 .is_nan(),
             "not measured"
         );
-        assert!(times.look_up(2).value.is_nan(), "no such light");
+        assert!(times.look_up("sun").value.is_nan(), "no such light");
     }
 
     #[test]

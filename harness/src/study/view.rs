@@ -1,18 +1,15 @@
 //! Queries to a finished study: variances, gains and times by model, sampler and light.
 
-use super::cell::Measured;
 use super::equal_time::{NOTHING, Sign, time_ratio};
-use super::output::Study;
-use super::rays::RAYS;
-use super::rows::{Estimator, Row, name};
+use super::estimator::{Estimator, name};
+use super::finished::Study;
+use super::rows::Row;
 use crate::rays::RayTimes;
 use crate::sampler::Sampler;
+use crate::variance::{MAX_RELATIVE_ERROR, Measured, RAYS};
 use hairis_instruments::plot::{Axis, Bar, bars};
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::Table;
-
-/// Relative standard error of V beyond which a cell is left out: the light was hardly hit.
-pub(super) const MAX_RELATIVE_ERROR: f64 = 0.25;
 
 /// Ratios of V over the cells of a grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,10 +107,15 @@ impl Study {
         })
     }
 
+    /// Time of a look-up of the light in ns; not a number if it was not measured.
+    pub(super) fn look_up(&self, light: usize) -> Estimate {
+        self.times.look_up(&self.lights()[light])
+    }
+
     /// Time counted beside that of a sample, in ns.
     pub(super) fn more(&self, light: usize, counted: Counted) -> Estimate {
         if counted == Counted::LookUp {
-            self.times.look_up(light)
+            self.look_up(light)
         } else {
             NOTHING
         }

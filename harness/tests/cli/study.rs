@@ -317,3 +317,64 @@ fn a_look_up_is_timed_after_a_merge_if_the_environment_is_at_hand() {
         );
     }
 }
+
+#[test]
+fn materials_join_a_study_and_move_no_row() {
+    let dir = TempDir::new().unwrap();
+    let at = |name: &str| dir.path().join(name);
+    let file = at("soft.json");
+    let json =
+        r#"{"model":"kajiya-kay","params":{"kd":[0.4,0.3,0.2],"ks":[0.1,0.3,0.5],"exponent":20}}"#;
+    fs::write(&file, json).unwrap();
+    let flags = ["--model", "chiang", "--material", file.to_str().unwrap()];
+    let whole = study(&at("whole"), "2", &flags);
+    assert_eq!(whole.code, Some(0), "{:?}", whole.err);
+    for shard in ["1/2", "2/2"] {
+        let run = study(
+            &at("parts"),
+            "2",
+            &[&flags[..], &["--shard", shard]].concat(),
+        );
+        assert_eq!(run.code, Some(0), "{:?}", run.err);
+    }
+    let merged = merge(&at("merged"), &[&at("parts")]);
+    assert_eq!(merged.code, Some(0), "{:?}", merged.err);
+    let read = |of: &str, name: &str| fs::read_to_string(at(of).join(name)).unwrap();
+    assert!(
+        read("whole", "study.csv") == fs::read_to_string(reference().join("study.csv")).unwrap(),
+        "the rows of the grid are as without materials"
+    );
+    let rows = read("whole", "materials.csv");
+    assert_eq!(rows, read("merged", "materials.csv"));
+    let has = |words: &str| rows.lines().any(|line| line.starts_with(words));
+    assert!(has("soft,kajiya-kay,85.0,uniform,constant,"), "{rows}");
+    assert!(
+        has("chiang-") && rows.contains(",by-channel,clear sky,"),
+        "{rows}"
+    );
+    assert!(
+        whole.out.iter().any(|line| line.contains("soft")),
+        "{:?}",
+        whole.out
+    );
+    // Another folder or the same flags: a part of other materials is refused.
+    let other = study(&at("whole"), "2", &[]);
+    assert_eq!(other.code, Some(2), "{:?}", other.err);
+    assert!(other.err[0].contains("materials"), "{:?}", other.err);
+    for (flags, words) in [
+        (["--model", "phong"], "--model must be one of gaussian"),
+        (
+            ["--material", "none.json"],
+            "--material none.json: cannot read",
+        ),
+    ] {
+        let refused = study(&at("refused"), "1", &flags);
+        assert_eq!(
+            (refused.code, refused.err.len()),
+            (Some(2), 1),
+            "{:?}",
+            refused.err
+        );
+        assert!(refused.err[0].contains(words), "{:?}", refused.err);
+    }
+}

@@ -19,9 +19,22 @@ use wide::f32x8;
 #[derive(Clone, Copy, Debug)]
 pub struct Constant;
 
+impl Constant {
+    /// Name of the light.
+    pub const NAME: &'static str = "constant";
+}
+
 impl Light for Constant {
     fn name(&self) -> &str {
-        "constant"
+        Self::NAME
+    }
+
+    fn words(&self) -> &str {
+        "constant light"
+    }
+
+    fn is_everywhere(&self) -> bool {
+        true
     }
 
     fn see(&self, _dir: DVec3) -> ([f64; 3], f64) {

@@ -26,6 +26,9 @@ const HALF: [f64; 2] = [2.0, 0.5];
 pub struct Rectangle;
 
 impl Rectangle {
+    /// Name of the light.
+    pub const NAME: &'static str = "rectangle";
+
     /// Solid angle seen from the shading point, in sr.
     ///
     /// `4 asin(a b / sqrt((a^2 + 1)(b^2 + 1)))` with half sides a and b, as an arctangent.
@@ -52,7 +55,11 @@ impl Rectangle {
 
 impl Light for Rectangle {
     fn name(&self) -> &str {
-        "rectangle"
+        Self::NAME
+    }
+
+    fn words(&self) -> &str {
+        "a large area light"
     }
 
     fn see(&self, dir: DVec3) -> ([f64; 3], f64) {

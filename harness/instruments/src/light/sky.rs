@@ -91,6 +91,12 @@ impl Default for Sky {
 }
 
 impl Sky {
+    /// Name of the environment.
+    pub const NAME: &'static str = "clear sky";
+
+    /// Its name in a sentence.
+    pub const WORDS: &'static str = "a procedural sky";
+
     /// Radiance of the sky without its sun at `dir` above the horizon, linear RGB in kcd/m^2; negative channels of colours outside the gamut are 0.
     fn sky_radiance(&self, dir: DVec3) -> [f64; 3] {
         // The fit diverges at the horizon itself: hold it from half a degree up.
@@ -171,8 +177,7 @@ impl Sky {
         let pixels = lit
             .chain(core::iter::repeat_n(ground, width * height - upper))
             .collect();
-        Environment::from_pixels("clear sky", width, height, pixels)
-            .expect("a pixel for each texel")
+        Environment::from_pixels(Self::NAME, width, height, pixels).expect("a pixel for each texel")
     }
 }
 

@@ -38,9 +38,22 @@ const SLOPE: f64 = luminance([
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Smooth;
 
+impl Smooth {
+    /// Name of the light.
+    pub const NAME: &'static str = "smooth";
+}
+
 impl Light for Smooth {
     fn name(&self) -> &str {
-        "smooth"
+        Self::NAME
+    }
+
+    fn words(&self) -> &str {
+        "smooth light"
+    }
+
+    fn is_everywhere(&self) -> bool {
+        true
     }
 
     fn see(&self, dir: DVec3) -> ([f64; 3], f64) {

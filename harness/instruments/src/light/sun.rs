@@ -28,6 +28,9 @@ pub struct Sun {
 }
 
 impl Sun {
+    /// Name of the light.
+    pub const NAME: &'static str = "sun";
+
     /// The disc around `towards` (of any length; straight up when it has no direction).
     #[must_use]
     pub fn five_degrees(towards: DVec3) -> Self {
@@ -52,7 +55,11 @@ impl Sun {
 
 impl Light for Sun {
     fn name(&self) -> &str {
-        "sun"
+        Self::NAME
+    }
+
+    fn words(&self) -> &str {
+        "a 5° sun"
     }
 
     fn see(&self, dir: DVec3) -> ([f64; 3], f64) {

@@ -9,7 +9,6 @@ use crate::geometry::Strands;
 use crate::hair::{Choice, Energy, check_paths, default_sampler};
 use crate::layers::{self, Beside};
 use crate::material::Hair;
-use crate::materials;
 use crate::memory;
 use crate::part::{self, Part};
 use crate::picture;
@@ -28,6 +27,7 @@ use hairis_instruments::light::Environment;
 use hairis_instruments::program::say;
 use hairis_instruments::progress::{share_bar, show_share};
 use hairis_instruments::shard::Shard;
+use hairis_materials::files;
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -237,7 +237,9 @@ fn hairs(flags: &Render, settings: &Settings) -> Result<Vec<Named>, Error> {
         let sampler = sampler.unwrap_or_else(|| default_sampler(model));
         choices.push(Choice::find(model, sampler, preset)?);
     }
-    for (name, material) in materials::read(&flags.material)? {
+    for (name, material) in files::read(&flags.material)
+        .map_err(|problem| Error::Usage(format!("--material {problem}")))?
+    {
         let sampler = flags.sampler.as_deref();
         choices.push(Choice::of_material(&name, &material, sampler)?);
     }

@@ -1,7 +1,7 @@
 //! Names of maps and of pictures, none of them twice.
 
 use hairis_instruments::error::Error;
-use std::collections::HashSet;
+use hairis_materials::numbered;
 use std::path::{Component, Path, PathBuf};
 
 /// A name of each file: the last part of its path, with as many folders before it as tell it from
@@ -52,20 +52,6 @@ pub(super) fn of_pictures(titles: &[String]) -> Vec<String> {
             .iter()
             .map(|title| title.replace(|c: char| !c.is_ascii_alphanumeric(), "-")),
     )
-}
-
-/// The names, with a number behind those that would be there already. File systems may not tell
-/// capitals apart.
-pub(crate) fn numbered(names: impl Iterator<Item = String>) -> Vec<String> {
-    let mut taken = HashSet::new();
-    let mut own = |name: String| {
-        let numbers = (2..).map(|number: u32| format!("{name}-{number}"));
-        let mut candidates = [name.clone()].into_iter().chain(numbers);
-        candidates
-            .find(|candidate| taken.insert(candidate.to_lowercase()))
-            .unwrap_or(name)
-    };
-    names.map(&mut own).collect()
 }
 
 #[cfg(test)]

@@ -7,7 +7,8 @@ fn header(seed: u64) -> Header {
     Plan {
         seed,
         quick: true,
-        environment: &sky,
+        lights: (&sky).into(),
+        materials: &[],
     }
     .header(Shard::WHOLE)
 }

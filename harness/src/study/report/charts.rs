@@ -1,14 +1,15 @@
 //! The plots of a study: variance, efficiency, gains and weights.
 
+use super::super::estimator::{Estimator, name, published, samplers, strategies};
+use super::super::finished::Study;
 use super::super::grid::GridAxis;
-use super::super::output::Study;
-use super::super::rows::{Estimator, Row, name, published, samplers, strategies};
+use super::super::rows::Row;
 use super::super::summary::on_gaussian;
 use super::super::times::PER_POINT;
 use super::super::view::{Counted, Gain, MANY, TOLD, mean_v};
-use crate::lights::CONSTANT;
 use crate::sampler::Sampler;
 use crate::subject::ModelKind;
+use hairis_instruments::light::Constant;
 use hairis_instruments::plot::{Axis, Bar, Series, bars, lines};
 use hairis_instruments::report::Drawing;
 use hairis_instruments::stats::Estimate;
@@ -62,14 +63,14 @@ pub(super) fn variances(of: &Study) -> Vec<Drawing> {
     let caption = format!(
         "Relative variance of a sample under {} light by sampler: geometric means over the other axes of the grid. Bars are \
          one standard error, mostly smaller than the marks. An error of 1% takes 10⁴ V samples.",
-        of.lights()[CONSTANT]
+        Constant::NAME
     );
     let charts = |(slug, label, (values, axis)): (&str, &str, GridAxis)| {
         each_model(&format!("v-by-{slug}"), &caption, &|model| {
             let series = samplers_on(model).map(|estimator| {
                 let point = |value: &f32| {
                     let rows = of
-                        .rows_of(estimator, CONSTANT)
+                        .rows_of(estimator, of.constant())
                         .filter(|row| axis(&row.cell) == *value);
                     mean_v(rows).map(|v| (f64::from(*value), v))
                 };
@@ -96,7 +97,7 @@ pub(super) fn efficiencies(of: &Study) -> Vec<Drawing> {
     each_model("efficiency", caption, &|model| {
         let title = format!(
             "Efficiency under {} light, {} model",
-            of.lights()[CONSTANT],
+            Constant::NAME,
             model.title()
         );
         let groups = PER_POINT.map(|n| format!("{n} per shading point"));
@@ -106,7 +107,7 @@ pub(super) fn efficiencies(of: &Study) -> Vec<Drawing> {
                 (
                     name(one.1).to_owned(),
                     PER_POINT
-                        .map(|n| bar(of.efficiency(one, CONSTANT, n)))
+                        .map(|n| bar(of.efficiency(one, of.constant(), n)))
                         .to_vec(),
                 )
             })
@@ -277,7 +278,7 @@ pub(super) fn distributions(of: &Study) -> Vec<Drawing> {
     let caption = format!(
         "How the gain over the published sampler spreads over the {cells} cells of the grid under {} light: left of 1 (the \
          upright) the sampler needs more samples than `published`. The time of a sample is not in it.",
-        of.lights()[CONSTANT]
+        Constant::NAME
     );
     let of_samplers = each_model("gain-over-cells", &caption, &|model| {
         let others = Sampler::ALL
@@ -287,7 +288,7 @@ pub(super) fn distributions(of: &Study) -> Vec<Drawing> {
             let other = (model, Some(sampler));
             of_sampler(
                 sampler,
-                distribution(of, sampler.name(), [published(other), other], CONSTANT),
+                distribution(of, sampler.name(), [published(other), other], of.constant()),
             )
         });
         let title = format!(
@@ -350,7 +351,7 @@ fn worst(
 ) -> Vec<(f64, f64)> {
     let of_inclination = |theta_o: &f32| {
         let rows = of
-            .rows_of(estimator, CONSTANT)
+            .rows_of(estimator, of.constant())
             .filter(|row| row.cell.theta_o_deg == *theta_o);
         let most = rows.filter_map(|row| figure(&row)).reduce(f64::max)?;
         Some((f64::from(*theta_o), most))

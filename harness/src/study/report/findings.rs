@@ -1,11 +1,11 @@
 //! The answer in sentences. Every word that judges follows from figures and their errors.
 
 use super::super::equal_time::Sign;
-use super::super::output::Study;
-use super::super::rows::{Estimator, Strategy, name, published, samplers};
+use super::super::estimator::{Estimator, Strategy, name, published, samplers};
+use super::super::finished::Study;
 use super::super::view::{Counted, MANY, TOLD};
 use crate::difference::{Difference, Differences, Summary, Width, albedo_ratio};
-use crate::lights::in_words;
+use crate::lights::{environment, in_words};
 use crate::sampler::Sampler;
 use crate::subject::ModelKind;
 use hairis_instruments::stats::Estimate;
@@ -98,7 +98,7 @@ fn worth(of: &Study) -> String {
 /// The samplers that are not told from the best of a model under a light, with the best one's gain over `published`; a
 /// look-up of the light is counted if it was timed.
 fn best(of: &Study, model: ModelKind, light: usize) -> Option<(Vec<Strategy>, Estimate)> {
-    let counted = if of.times.look_up(light).value.is_finite() {
+    let counted = if of.look_up(light).value.is_finite() {
         Counted::LookUp
     } else {
         Counted::Sample
@@ -193,8 +193,9 @@ fn l1(difference: &Difference) -> [Summary; 2] {
 }
 
 /// How far sampling of the hair can go under the environment: V of `published` over that of perfect sampling, and of `matched`.
-fn limit(of: &Study) -> Option<String> {
-    let (light, name) = of.lights().iter().enumerate().next_back()?;
+pub(super) fn limit(of: &Study) -> Option<String> {
+    let light = environment(of.lights())?;
+    let name = &of.lights()[light];
     let gains = |strategy: Strategy| {
         let gain = |model| {
             Some(times(
@@ -262,7 +263,7 @@ fn cost(of: &Study) -> String {
         ))
     });
     let look_ups = by_light(of, &|light, name| {
-        let ns = of.times.look_up(light).value;
+        let ns = of.look_up(light).value;
         ns.is_finite()
             .then(|| format!("{} ns ({name})", number::plain(ns, 2)))
     });

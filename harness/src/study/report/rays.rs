@@ -1,13 +1,14 @@
 //! The section on rays chosen from candidates.
 
 use super::super::equal_time::count_cells;
-use super::super::output::Study;
-use super::super::rays::{MIS, POOLS, RAYS, half_visible, times_at, v};
-use super::super::rows::{Estimator, on_each_model, samplers};
+use super::super::estimator::{Estimator, on_each_model, samplers};
+use super::super::finished::Study;
+use super::super::rays::times_at;
 use super::super::summary::shown;
 use super::super::view::{Gain, gain, sure_ratio};
 use super::charts::{MEDIANS, each_model, median_bar, samplers_on};
 use crate::rays::{PRICES_US, VISIBLE, occluded};
+use crate::variance::{MIS, POOLS, RAYS, half_visible, ray_v};
 use hairis_instruments::plot::Axis;
 use hairis_instruments::report::{Drawing, Section};
 use hairis_instruments::stats::Estimate;
@@ -28,7 +29,7 @@ pub(super) fn section(of: &Study) -> Section {
 fn ratio(of: &Study, one: Estimator, light: usize, [base, other]: [usize; 2]) -> Option<Gain> {
     gain(
         of.rows_of(one, light)
-            .map(|row| [base, other].map(|by| v(row.measured, by))),
+            .map(|row| [base, other].map(|by| ray_v(row.measured, by))),
     )
 }
 
@@ -47,7 +48,7 @@ fn variances(of: &Study) -> Table {
                 .as_ref()
                 .map_or_else(String::new, |found| shown(found.median))
         };
-        let plain = |by| gain(rows().map(|row| [v(row.measured, by), Estimate::exact(1.0)]));
+        let plain = |by| gain(rows().map(|row| [ray_v(row.measured, by), Estimate::exact(1.0)]));
         let of_mis = POOLS.map(|by| ratio(of, one, light, [by, MIS]));
         let less = |found: &Option<Gain>| {
             found
@@ -55,7 +56,10 @@ fn variances(of: &Study) -> Table {
                 .map_or_else(String::new, |of| number::percent(of.shares[1]))
         };
         let visible = |share| {
-            gain(rows().map(|row| [POOLS[1], MIS].map(|by| occluded(v(row.measured, by), share))))
+            gain(
+                rows()
+                    .map(|row| [POOLS[1], MIS].map(|by| occluded(ray_v(row.measured, by), share))),
+            )
         };
         let mut cells: Vec<String> = (0..RAYS.len()).map(|by| median(&plain(by))).collect();
         cells.extend(of_mis.each_ref().map(median));

@@ -1,7 +1,7 @@
 //! Tables that only the report has.
 
-use super::super::output::Study;
-use super::super::rows::{name, on_each_model, published, samplers, strategies};
+use super::super::estimator::{name, on_each_model, published, samplers, strategies};
+use super::super::finished::Study;
 use super::super::summary::shown;
 use super::super::times::PER_POINT;
 use super::super::view::{mean_of, mean_v};
@@ -54,7 +54,7 @@ pub(super) fn all(of: &Study) -> [Table; 3] {
         .texts(["light"])
         .numbers(["ns"]);
     for (light, name) in of.lights().iter().enumerate() {
-        let ns = of.times.look_up(light);
+        let ns = of.look_up(light);
         look_ups.push([
             name.clone(),
             if ns.value.is_finite() {

@@ -14,14 +14,14 @@
 //! It is a limit, not a bound: samplers that follow the hair ever more closely approach these figures; one that happens to
 //! favour bright parts of the light can be better, as tails wider than the hair's are under a small sun.
 
-use super::cell::Measured;
+use super::Measured;
 use super::tally::{Figures, Sums, joined, largest};
 use crate::sampler::Sampler;
 use hairis_instruments::stats::Estimate;
 use wide::f64x8;
 
 /// Source of the directions: the sampler whose weights vary least.
-pub(super) const SOURCE: Sampler = Sampler::Matched25;
+pub(crate) const SOURCE: Sampler = Sampler::Matched25;
 
 /// Sums of the weight that counts for F, and of `m w r`, `m w r^2` and `m w r ln r`; the largest is an `r`.
 pub(super) type PerfectTally = Sums<4>;
@@ -81,7 +81,7 @@ pub(super) fn measured(strata: &[PerfectTally; 2]) -> Measured {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::tally::tests::assert_honest;
+    use crate::variance::tally::tests::assert_honest;
     use hairis_instruments::quadrature::GaussLegendre;
     use hairis_instruments::sequence::Independent;
 

@@ -8,6 +8,7 @@
 
 use core::array::from_fn;
 use hairis_instruments::stats::Estimate;
+use serde::Serialize;
 use wide::f64x8;
 
 /// Sums over the directions of one stratum, the sampler's or the light's, one per lane: of `N` terms, and of the product of
@@ -25,15 +26,15 @@ pub(super) struct Sums<const N: usize> {
 pub(super) type Tally = Sums<3>;
 
 /// Figures of a sampler under a light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Figures {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct Figures {
     /// `E_p[y]`: the integral of `L S cos theta_i`.
-    pub(super) mean: Estimate,
+    pub(crate) mean: Estimate,
     /// Relative variance of one sample, `E_p[y^2] / E_p[y]^2 - 1`.
-    pub(super) v: Estimate,
+    pub(crate) v: Estimate,
     /// Kullback-Leibler divergence of the sampler's density from the normalised integrand, in nats:
     /// `E_p[w ln w]` with `w = y / E_p[y]`.
-    pub(super) kl: Estimate,
+    pub(crate) kl: Estimate,
 }
 
 impl<const N: usize> Default for Sums<N> {
@@ -224,7 +225,7 @@ pub(super) mod tests {
     }
 
     /// A thousand runs' mean, V and divergence are off the truth by what their errors say, no more and no less.
-    pub(in crate::study) fn assert_honest(
+    pub(in crate::variance) fn assert_honest(
         ratio: u64,
         truth: [f64; 3],
         mut figures: impl FnMut(u64) -> Figures,

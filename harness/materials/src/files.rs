@@ -1,8 +1,7 @@
 //! Materials from files.
 
-use crate::figures::names::numbered;
-use hairis_instruments::error::Error;
-use hairis_materials::MaterialSpec;
+use crate::MaterialSpec;
+use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
@@ -16,11 +15,10 @@ const LONGEST: u64 = 1 << 20;
 /// # Errors
 ///
 /// If a file cannot be read, or a material is refused: the file and the field.
-pub fn read(paths: &[PathBuf]) -> Result<Vec<(String, MaterialSpec)>, Error> {
+pub fn read(paths: &[PathBuf]) -> Result<Vec<(String, MaterialSpec)>, String> {
     let (mut names, mut all) = (Vec::new(), Vec::new());
     for path in paths {
-        let refuse =
-            |problem: String| Error::Usage(format!("--material {}: {problem}", path.display()));
+        let refuse = |problem: String| format!("{}: {problem}", path.display());
         let materials = text(path)
             .and_then(|text| MaterialSpec::parse_all(&text))
             .map_err(refuse)?;
@@ -32,6 +30,21 @@ pub fn read(paths: &[PathBuf]) -> Result<Vec<(String, MaterialSpec)>, Error> {
         all.extend(materials);
     }
     Ok(numbered(names.into_iter()).into_iter().zip(all).collect())
+}
+
+/// The names, with a number behind those that would be there already. File systems may not tell
+/// capitals apart.
+#[must_use]
+pub fn numbered(names: impl Iterator<Item = String>) -> Vec<String> {
+    let mut taken = HashSet::new();
+    let mut own = |name: String| {
+        let numbers = (2..).map(|number: u32| format!("{name}-{number}"));
+        let mut candidates = [name.clone()].into_iter().chain(numbers);
+        candidates
+            .find(|candidate| taken.insert(candidate.to_lowercase()))
+            .unwrap_or(name)
+    };
+    names.map(&mut own).collect()
 }
 
 /// The text of a file.

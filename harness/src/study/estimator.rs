@@ -1,0 +1,64 @@
+//! Estimators: a model, and how its directions are drawn.
+
+use super::grid::Cell;
+use crate::sampler::{Sampler, weight_bound};
+use crate::subject::ModelKind;
+use crate::variance::Measured;
+
+/// The sampler of a row; `None`: perfect sampling of the hair, see [`variance`](crate::variance).
+pub(super) type Strategy = Option<Sampler>;
+
+/// A model, and how its directions are drawn.
+pub(super) type Estimator = (ModelKind, Strategy);
+
+/// Every strategy, in the order of reports.
+pub(super) fn strategies() -> impl Iterator<Item = Strategy> + Clone {
+    samplers().chain([None])
+}
+
+/// Samplers that can be run.
+pub(super) fn samplers() -> impl Iterator<Item = Strategy> + Clone {
+    Sampler::ALL.into_iter().map(Some)
+}
+
+/// Each of some strategies on each model.
+pub(super) fn on_each_model(
+    of: impl Iterator<Item = Strategy> + Clone,
+) -> impl Iterator<Item = Estimator> + Clone {
+    ModelKind::ALL
+        .into_iter()
+        .flat_map(move |model| of.clone().map(move |strategy| (model, strategy)))
+}
+
+/// Name in reports and in rows.
+pub(super) fn name(strategy: Strategy) -> &'static str {
+    strategy.map_or("perfect", Sampler::name)
+}
+
+/// The published sampler of the same model, which gains are measured against.
+pub(super) const fn published((model, _): Estimator) -> Estimator {
+    (model, Some(Sampler::Published))
+}
+
+/// Place of a row within its cell: perfect sampling comes after all samplers of all models.
+pub(super) const fn place((model, strategy): Estimator, light: usize, lights: usize) -> usize {
+    let line = match strategy {
+        Some(sampler) => model as usize * Sampler::ALL.len() + sampler as usize,
+        None => ModelKind::ALL.len() * Sampler::ALL.len() + model as usize,
+    };
+    line * lights + light
+}
+
+/// Sets the proven bounds on the weights in a cell: they depend on no light.
+pub(super) fn set_bounds(cell: &Cell, measured: &mut [Measured], lights: usize) {
+    let (params, theta_o) = (cell.params().ok(), f64::from(cell.theta_o_deg).to_radians());
+    for (model, strategy) in on_each_model(samplers()) {
+        let bound = strategy
+            .zip(params.as_ref())
+            .and_then(|(of, params)| weight_bound(model, of, params, theta_o));
+        let first = place((model, strategy), 0, lights);
+        measured[first..first + lights]
+            .iter_mut()
+            .for_each(|row| row.weight_bound = bound);
+    }
+}

@@ -1,0 +1,74 @@
+//! The timer: contenders in turns, round by round, and order statistics over the rounds.
+
+use hairis_benches::task::Pass;
+use hairis_instruments::stats::{Estimate, percentile};
+use std::time::Instant;
+
+/// A time in ns over the rounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TimeSpread {
+    /// First quartile, median and third quartile.
+    pub(crate) quartiles: [f64; 3],
+    /// Standard error of the median: that of a normal spread of the same quartiles.
+    pub(crate) standard_error: f64,
+}
+
+impl TimeSpread {
+    /// The median.
+    pub(crate) const fn median(&self) -> Estimate {
+        Estimate {
+            value: self.quartiles[1],
+            standard_error: self.standard_error,
+        }
+    }
+}
+
+/// Contenders in the order of a round, which changes from round to round.
+pub(crate) fn turns(count: usize, round: usize) -> impl Iterator<Item = usize> {
+    (0..count).map(move |k| (k + round) % count)
+}
+
+/// Times contenders in turn, in an order that changes from round to round; `time` gives the ns of a stretch of one.
+pub(crate) fn in_turns<C>(
+    contenders: &mut [C],
+    rounds: usize,
+    mut time: impl FnMut(&mut C) -> f64,
+) -> Vec<TimeSpread> {
+    let count = contenders.len();
+    let mut ns = vec![Vec::with_capacity(rounds); count];
+    for round in 0..rounds {
+        for k in turns(count, round) {
+            ns[k].push(time(&mut contenders[k]));
+        }
+    }
+    let spread = |ns: &Vec<f64>| {
+        let quartiles = quartiles(ns);
+        TimeSpread {
+            quartiles,
+            standard_error: median_error(quartiles, rounds),
+        }
+    };
+    ns.iter().map(spread).collect()
+}
+
+/// Time of `passes` passes, ns.
+pub(crate) fn stretch(task: &mut dyn Pass, passes: u32) -> f64 {
+    let start = Instant::now();
+    for _ in 0..passes {
+        task.pass();
+    }
+    start.elapsed().as_secs_f64() * 1e9
+}
+
+/// First quartile, median and third quartile.
+pub(crate) fn quartiles(samples: &[f64]) -> [f64; 3] {
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    [0.25, 0.5, 0.75].map(|p| percentile(&sorted, p))
+}
+
+/// Standard error of the median of `count` numbers with these quartiles: that of a normal spread, whose deviation is 1/1.349 of
+/// their distance, and a median's error 1.2533 of a mean's.
+pub(crate) fn median_error(quartiles: [f64; 3], count: usize) -> f64 {
+    1.2533 / 1.349 * (quartiles[2] - quartiles[0]) / (count as f64).sqrt()
+}
