@@ -6,21 +6,27 @@ mod table;
 pub use rectangle::{Rectangle, RectangleSampling, View};
 pub use table::{Table, Tables};
 
-use core::f32::consts::{PI, TAU};
+use core::f32::consts::TAU;
 use glam::Vec3;
 use hairis::Vec3x8;
 use hairis::simd::f32x8;
-use hairis_instruments::light::{self, Environment, Light as _, Seen8, rounded};
+use hairis_instruments::light::{self, Light, Seen8, rounded};
+use std::sync::Arc;
 
-/// Light from infinitely far away.
+/// Light from infinitely far away: any of the lights that models are compared under, or none.
+///
+/// ```
+/// use hairis_instruments::light::Constant;
+/// use hairis_render::lights::Sky;
+/// assert!(Sky::BLACK.is_black() && !Sky::from(Constant).is_black());
+/// ```
 #[derive(Clone, Debug)]
-pub enum Sky {
-    /// No light.
-    Black,
-    /// Radiance 1 from everywhere.
-    White,
-    /// A latitude-longitude map.
-    Map(Box<Environment>),
+pub struct Sky(Option<Arc<dyn Light>>);
+
+impl<L: Light + 'static> From<L> for Sky {
+    fn from(light: L) -> Self {
+        Self(Some(Arc::new(light)))
+    }
 }
 
 /// A direction towards a light.
@@ -100,81 +106,53 @@ pub struct Seen {
 }
 
 impl Sky {
+    /// No light.
+    pub const BLACK: Self = Self(None);
+
     /// Whether it gives no light.
     #[must_use]
-    pub fn is_black(&self) -> bool {
-        matches!(self, Self::Black)
+    pub const fn is_black(&self) -> bool {
+        self.0.is_none()
     }
 
     /// A direction drawn from two uniform numbers.
     #[must_use]
     pub fn sample(&self, xi: [f32; 2]) -> Option<LightSample> {
-        match self {
-            Self::Black => None,
-            Self::White => {
-                let direction = uniform_direction(xi);
-                Some(LightSample {
-                    direction,
-                    distance: f32::INFINITY,
-                    radiance: Vec3::ONE,
-                    pdf: 0.25 / PI,
-                })
-            }
-            Self::Map(map) => towards(&map.sample(xi.map(f64::from))),
-        }
+        let light = self.0.as_ref()?;
+        towards(&light.sample(xi.map(f64::from)))
     }
 
     /// Eight directions, as [`sample`](Self::sample) draws them.
     #[must_use]
     pub fn sample8(&self, xi: &[[f32; 8]; 2]) -> LightSample8 {
-        let pairs: [[f32; 2]; 8] = core::array::from_fn(|lane| [xi[0][lane], xi[1][lane]]);
-        LightSample8::from(match self {
-            Self::Map(map) => map
-                .sample8(pairs.map(|xi| xi.map(f64::from)))
-                .each_ref()
-                .map(towards),
-            Self::Black | Self::White => pairs.map(|xi| self.sample(xi)),
-        })
+        let pairs = core::array::from_fn(|lane| [xi[0][lane], xi[1][lane]].map(f64::from));
+        let draw = |light: &Arc<dyn Light>| light.sample8(pairs).each_ref().map(towards);
+        LightSample8::from(self.0.as_ref().map_or([None; 8], draw))
     }
 
     /// Radiance along a ray that meets nothing, and the density of its direction.
     #[must_use]
     pub fn see(&self, direction: Vec3) -> Seen {
-        match self {
-            Self::Black => Seen {
-                radiance: Vec3::ZERO,
-                pdf: 0.0,
-            },
-            Self::White => Seen {
-                radiance: Vec3::ONE,
-                pdf: 0.25 / PI,
-            },
-            Self::Map(map) => {
-                let direction = direction.as_dvec3();
-                let radiance = Vec3::from_array(map.radiance(direction).map(rounded));
-                Seen {
-                    radiance,
-                    pdf: rounded(map.pdf(direction)),
-                }
-            }
+        let look = |light: &Arc<dyn Light>| light.see(direction.as_dvec3());
+        let (radiance, pdf) = self.0.as_ref().map_or(([0.0; 3], 0.0), look);
+        Seen {
+            radiance: Vec3::from_array(radiance.map(rounded)),
+            pdf: rounded(pdf),
         }
     }
 
     /// Looks along eight rays.
     #[must_use]
     pub fn see8(&self, directions: &Vec3x8) -> Seen8 {
-        let Self::Map(map) = self else {
-            let seen = self.see(Vec3::Y);
-            return Seen8 {
-                radiance: seen.radiance.to_array().map(f32x8::splat),
-                pdf: f32x8::splat(seen.pdf),
-            };
+        const DARK: Seen8 = Seen8 {
+            radiance: [f32x8::ZERO; 3],
+            pdf: f32x8::ZERO,
         };
-        map.see8(directions)
+        self.0.as_ref().map_or(DARK, |light| light.see8(directions))
     }
 }
 
-/// A direction of a map, in single precision.
+/// A direction of a light, in single precision; none where it cannot be drawn.
 fn towards(sample: &light::LightSample) -> Option<LightSample> {
     let pdf = rounded(sample.pdf);
     let radiance = Vec3::from_array(sample.radiance.map(rounded));
@@ -195,4 +173,44 @@ pub fn uniform_direction([xi_x, xi_phi]: [f32; 2]) -> Vec3 {
     let across = (4.0 * xi_x * (1.0 - xi_x)).max(0.0).sqrt();
     let (sin, cos) = (TAU * xi_phi).sin_cos();
     Vec3::new(x, across * cos, across * sin)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hairis_instruments::light::{Constant, Smooth, Sun};
+
+    #[test]
+    fn a_sky_is_any_light_and_samples_what_it_shows() {
+        let sun = Sun::five_degrees(glam::DVec3::new(0.3, 1.0, 0.2));
+        for sky in [Sky::from(Constant), Sky::from(Smooth), Sky::from(sun)] {
+            let xi = [0, 1].map(|axis| {
+                core::array::from_fn(|lane| {
+                    [0.07 + 0.11 * lane as f32, 0.83 - 0.1 * lane as f32][axis]
+                })
+            });
+            let eight = sky.sample8(&xi);
+            let seen8 = sky.see8(&eight.direction);
+            for lane in 0..8 {
+                let pair = xi.each_ref().map(|axis: &[f32; 8]| axis[lane]);
+                let sample = sky.sample(pair).expect("lit");
+                assert_eq!(eight.lane(lane, 1.0), Some(sample));
+                let seen = sky.see(sample.direction);
+                let near = |a: f32, b: f32| (a / b - 1.0).abs() < 1e-5;
+                let pdf8 = seen8.pdf.as_array()[lane];
+                assert!(
+                    near(seen.pdf, sample.pdf) && near(pdf8, sample.pdf),
+                    "{sky:?}: {sample:?} {seen:?}"
+                );
+                assert!(
+                    near(seen.radiance.y, sample.radiance.y),
+                    "{sky:?}: {seen:?}"
+                );
+            }
+        }
+        let black = Sky::BLACK;
+        assert_eq!(black.sample([0.5; 2]), None);
+        assert_eq!(black.see(Vec3::Y).pdf, 0.0);
+        assert_eq!(black.see8(&[Vec3::Y; 8].into()).radiance, [f32x8::ZERO; 3]);
+    }
 }

@@ -193,7 +193,7 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
         Rectangle::light(corner, scale * a, scale * b, Vec3::splat(radiance)).facing(centre)
     };
     let (x, z) = (Vec3::X, Vec3::Z);
-    let mut sky = Sky::Black;
+    let mut sky = Sky::BLACK;
     let mut rectangles = Vec::new();
     match name {
         Name::Area | Name::AreaSoft => {
@@ -202,12 +202,12 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
         Name::AreaHead | Name::Head => {
             rectangles.push(lamp(at(-20.0, 30.0, -10.0), 40.0 * x, 40.0 * z, 6.0))
         }
-        Name::Env => sky = Sky::Map(Box::new(light::Sky::default().environment())),
+        Name::Env => sky = light::Sky::default().environment().into(),
         Name::BoxSingle | Name::Box => rectangles = cornell_box(centre, scale),
-        Name::FurnaceOne | Name::FurnaceIso => sky = Sky::White,
+        Name::FurnaceOne | Name::FurnaceIso => sky = light::Constant.into(),
     }
     if let Some(env) = env {
-        sky = Sky::Map(Box::new(env));
+        sky = env.into();
         rectangles.clear();
     }
     let camera = match name {

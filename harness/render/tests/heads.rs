@@ -236,7 +236,7 @@ fn a_white_mesh_in_a_white_sphere_does_not_show() {
         ..Head::mesh(mesh(ellipsoid, 30))
     };
     let mut scene = scene(Some(head));
-    scene.sky = hairis_render::lights::Sky::White;
+    scene.sky = hairis_instruments::light::Constant.into();
     // No hair, whose albedo is below 1.
     scene.strands = Strands::builder().finish();
     scene.tree = hairis_render::tree::Tree::build(&scene.strands).expect("nothing");

@@ -142,7 +142,7 @@ mod tests {
     fn every_entry_has_the_density_of_the_sky() {
         // Over seeds, the texels of single entries, against the probabilities of texels.
         let map = map();
-        let sky = Sky::Map(Box::new(map.clone()));
+        let sky = Sky::from(map.clone());
         let texel = |dir: glam::Vec3| {
             let (polar, turn) = (dir.y.clamp(-1.0, 1.0).acos(), dir.x.atan2(-dir.z));
             let cell = |x: f32, n: usize| {
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn tables_differ_by_seed_and_their_error_is_small() {
         let map = map();
-        let sky = Sky::Map(Box::new(map.clone()));
+        let sky = Sky::from(map.clone());
         let mut moments = Moments::new();
         for seed in 0..64 {
             let table = Table::draw(&sky, seed, 1 << 14).expect("a sky");
@@ -212,7 +212,7 @@ mod tests {
             "{got:?} for {:?}",
             truth.value
         );
-        assert!(Table::draw(&Sky::Black, 1, 16).is_none());
+        assert!(Table::draw(&Sky::BLACK, 1, 16).is_none());
         let bytes = |length| size_of_val(&Table::draw(&sky, 1, length).expect("a sky").blocks[..]);
         assert_eq!([bytes(1 << 14), bytes(usize::MAX)], [1 << 19, 1 << 23]);
         let tables = Tables::new(&sky, 1, 64);
