@@ -240,7 +240,7 @@ impl<M: Model> Material8<M> {
         level.run_into(kernel, |prepared| Bsdf8 { prepared, level })
     }
 
-    /// Where lanes integrate the lobes, if any does.
+    /// Lanes that integrate the lobes, if any does.
     #[inline(always)]
     pub(super) fn integrating(&self) -> Option<f32x8> {
         let lanes = M::integrates::<f32x8, f32x8>(&self.constants);

@@ -28,7 +28,7 @@ impl<M: Model> Bsdf8<M> {
         self.conserving_where(f32x8::ONE)
     }
 
-    /// The same in the lanes whose number is above 0.
+    /// Conserves energy in the lanes whose number is above 0.
     #[inline]
     pub(crate) fn conserving_where(&self, lanes: f32x8) -> Self {
         let level = self.level;
