@@ -151,7 +151,6 @@ impl RegisteredBell for Cauchy {
 impl<B: RegisteredBell> Registered for Published<B> {
     const NAME: &'static str = B::NAME;
     const CHOICE: Option<(&'static str, &'static str)> = Some(("sampler", "published"));
-    const GAINS_ENERGY: bool = true;
     const MODEL: Self = Self(B::BELL);
 }
 
@@ -184,6 +183,5 @@ impl<const BANDS: usize> Word<BANDS> {
 impl<B: RegisteredBell, const BANDS: usize> Registered for Matched<B, BANDS> {
     const NAME: &'static str = B::NAME;
     const CHOICE: Option<(&'static str, &'static str)> = Some(("sampler", Word::<BANDS>::WORD));
-    const GAINS_ENERGY: bool = true;
     const MODEL: Self = Self(B::BELL);
 }

@@ -33,8 +33,6 @@ pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
     const MODEL: Self;
     /// Whether it reads [`Hit::h`](hairis::Hit::h).
     const NEAR_FIELD: bool = false;
-    /// Whether it may return more light than arrives, so that [`Conserving`](hairis::Conserving) changes it.
-    const GAINS_ENERGY: bool = false;
     /// Name of the lobes' colours in reports; `None` if they are not reported.
     const COLORS: Option<&'static str> = None;
 }

@@ -81,7 +81,7 @@ unsafe fn run(id: ModelId, raw: *const RawMaterial, rows: *const Rows, n: usize)
         // SAFETY: the tag is the model's; the caller's promise.
         unsafe {
             let (material, rows) = (material::<M>(raw), &*rows);
-            if M::GAINS_ENERGY && is_conserving(raw) {
+            if !M::CONSERVES && is_conserving(raw) {
                 packets::<M>(&[raw; 8], true, rows, n);
                 return;
             }
@@ -139,7 +139,7 @@ unsafe fn packets<M: Registered>(
             let rows = rows.after(at);
             let hits = Hit8::new(load3(rows.wo, count), load(rows.h, count));
             let bsdf = pack.prepare8(hits);
-            if M::GAINS_ENERGY && conserve {
+            if !M::CONSERVES && conserve {
                 store_rows(&bsdf.conserving(), &rows, count);
             } else {
                 store_rows(&bsdf, &rows, count);

@@ -58,7 +58,7 @@ pub unsafe extern "C" fn hairis_prepare(
         // SAFETY: the tag is the model's; the caller's promise.
         let (material, to, conserve) = unsafe { (material::<M>(from), place::<M>(to), is_conserving(from)) };
         let bsdf = material.prepare_into(Hit::new(Vec3::new(u, v, w), h), to);
-        if M::GAINS_ENERGY && conserve {
+        if !M::CONSERVES && conserve {
             *bsdf = bsdf.conserving();
         }
     });

@@ -386,7 +386,7 @@ pub unsafe extern "C" fn hairis_material_init(
         assert_fits::<M>();
         // SAFETY: the values outlive the call.
         let material = build::<M>(unsafe { &*values }, energy)?;
-        let energy = if M::GAINS_ENERGY { energy } else { ENERGY_RAW };
+        let energy = if !M::CONSERVES { energy } else { ENERGY_RAW };
         // SAFETY: the caller's promise; the handle fits.
         unsafe {
             to.write_bytes(0, 1);

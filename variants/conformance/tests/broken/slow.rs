@@ -14,8 +14,10 @@ impl Model for Slow {
     type Params = Params;
     type Material<C: Scalar> = <Fiber as Model>::Material<C>;
     type Prepared<C: Scalar> = <Fiber as Model>::Prepared<C>;
+    type Fit<C: Scalar> = [C; 0];
 
     const LOBES: &'static [&'static str] = Fiber::LOBES;
+    const CONSERVES: bool = true;
 
     fn material(&self, params: &Params) -> Self::Material<f32> {
         Fiber.material(params)
