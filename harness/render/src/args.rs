@@ -326,6 +326,24 @@ impl Render {
         if let Some(depth) = self.depth.filter(|depth| !(1..=10_000).contains(depth)) {
             return refuse("--depth", "from 1 to 10000", &depth);
         }
+        self.check_integrator()
+    }
+
+    /// Refuses flags that the integrator of the picture does not use.
+    fn check_integrator(&self) -> Result<(), Error> {
+        let integrator = self.integrator.unwrap_or(self.scene.defaults().integrator);
+        for (flag, is_given, user) in [
+            ("--depth", self.depth.is_some(), Integrator::Path),
+            ("--aa", self.aa > 1, Integrator::Gather),
+        ] {
+            if is_given && integrator != user {
+                let [user, got] = [user, integrator].map(Integrator::word);
+                let problem = format!(
+                    "{flag} must be given with --integrator {user}, got {got}: leave it out"
+                );
+                return Err(Error::Usage(problem));
+            }
+        }
         Ok(())
     }
 }

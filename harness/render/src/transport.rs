@@ -36,6 +36,16 @@ pub enum Integrator {
 }
 
 impl Integrator {
+    /// Word of the command line.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Gather => "gather",
+            Self::Direct => "direct",
+            Self::Path => "path",
+        }
+    }
+
     /// Samples of a pass over a picture that grows. With [`Gather`](Self::Gather), each pass finds its shading points again.
     #[must_use]
     pub fn pass(self) -> u32 {

@@ -60,6 +60,14 @@ fn bad_values_are_refused_in_one_line() {
         (&["--spp", "0"][..], &["--spp", "got 0"][..]),
         (&["--aa", "0"], &["--aa", "got 0"]),
         (&["--depth", "0"], &["--depth", "got 0"]),
+        (
+            &["--integrator", "gather", "--depth", "4"],
+            &["--depth", "path", "got gather"],
+        ),
+        (
+            &["--integrator", "path", "--aa", "4"],
+            &["--aa", "gather", "got path"],
+        ),
         (&["--time", "0"], &["--time", "got 0"]),
         (&["--exposure", "nan"], &["--exposure", "NaN"]),
         (&["--crop", "0,0,9999,1"], &["--crop"]),
