@@ -244,6 +244,8 @@ impl<M: Model> Material8<M> {
     #[inline(always)]
     pub(super) fn integrating(&self) -> Option<f32x8> {
         let lanes = M::integrates::<f32x8, f32x8>(&self.constants);
-        lanes.simd_gt(f32x8::ZERO).any().then_some(lanes)
+        // By numbers and not by a mask of the CPU: compilers then drop the question for models that never integrate.
+        let any = lanes.as_array().iter().any(|lane| *lane > 0.0);
+        any.then_some(lanes)
     }
 }
