@@ -40,7 +40,7 @@ const C: &str = "\
 #if defined(__CUDACC__)
 #define HAIRIS_FN static __host__ __device__ __forceinline__
 #elif defined(__GNUC__)
-#define HAIRIS_FN static inline __attribute__((always_inline))
+#define HAIRIS_FN static inline __attribute__((always_inline, unused))
 #elif defined(_MSC_VER)
 #define HAIRIS_FN static __forceinline
 #else
