@@ -50,7 +50,10 @@ refused 'no part' merge "$dir/joined" "$dir/joined"
 # Promise: shader prints a model that a C compiler accepts, and refuses a name that is none.
 "$hairis" shader --model chiang --target c --gradient > "$dir/hairis.h"
 echo '#include "hairis.h"
-int main(void) { return hairis_chiang_prepare(hairis_chiang_material_brown(), hairis_vec3(0, 1, 0), 0.5f).fresnel > 1; }' > "$dir/main.c"
+int main(void) {
+  HairisVec3 wo = {0, 1, 0}, wi = {0.28f, 0.96f, 0};
+  return !(hairis_chiang_eval_hit(hairis_chiang_material_brown(), wo, 0.5f, wi).pdf > 0);
+}' > "$dir/main.c"
 cc -std=c99 -Wall -Wextra -Werror "$dir/main.c" -o "$dir/main" -lm && "$dir/main" || { echo "FAIL the header of chiang"; exit 1; }
 refused 'must be one of' shader --model fur --target c
 
