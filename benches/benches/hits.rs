@@ -7,7 +7,7 @@
 use core::array::from_fn;
 use core::hint::black_box;
 use glam::Vec3;
-use hairis::columns::{EvalColumns, HitColumns, MaterialTable, SampleColumns};
+use hairis::columns::{EvalColumns, HitColumns, MaterialTable, SampleColumns, in_groups};
 use hairis::model::Model;
 use hairis::simd::Level;
 use hairis::{Conserving, Gaussian, HairParams, Matched, Material, Material8, Published};
@@ -196,17 +196,17 @@ impl Run<'_> {
             self.pair(call, "one lane", DIRECTIONS, ours, base);
         };
         row(
-            "eval_hit, Conserving over raw",
+            "eval_hit: Conserving over raw",
             &mut || evals(&|wo, wi| keep(fit.eval_hit(wo, wi))),
             &mut || evals(&|wo, wi| keep(raw.eval_hit(wo, wi))),
         );
         row(
-            "sample_hit, Conserving over raw",
+            "sample_hit: Conserving over raw",
             &mut || samples(&|wo, xi| keep(fit.sample_hit(wo, xi))),
             &mut || samples(&|wo, xi| keep(raw.sample_hit(wo, xi))),
         );
         row(
-            "prepare, Conserving over raw",
+            "prepare: Conserving over raw",
             &mut || evals(&|wo, _| keep(fit.prepare(wo))),
             &mut || evals(&|wo, _| keep(raw.prepare(wo))),
         );
@@ -229,7 +229,7 @@ impl Run<'_> {
             self.pair(call, level.name(), DIRECTIONS, ours, base);
         };
         row(
-            "eval_hits, Conserving over raw",
+            "eval_hits: Conserving over raw",
             &mut || {
                 let (hits, wi, _, out, _) = ours.parts();
                 black_box(fit.eval_hits(hits, wi, out).is_ok());
@@ -240,7 +240,7 @@ impl Run<'_> {
             },
         );
         row(
-            "sample_hits, Conserving over raw",
+            "sample_hits: Conserving over raw",
             &mut || {
                 let (hits, _, xi, _, out) = ours.parts();
                 black_box(fit.sample_hits(hits, xi, out).is_ok());
@@ -272,12 +272,12 @@ impl Run<'_> {
             self.pair(call, level.name(), DIRECTIONS, ours, base);
         };
         row(
-            "prepare8 of one material, Conserving over raw",
+            "prepare8 of one material: Conserving over raw",
             &mut || wo.iter().for_each(|wo| keep(fit.prepare8(wo))),
             &mut || wo.iter().for_each(|wo| keep(raw.prepare8(wo))),
         );
         row(
-            "prepare8 of eight materials, Conserving over raw",
+            "prepare8 of eight materials: Conserving over raw",
             &mut || wo.iter().for_each(|wo| keep(fit8.prepare8(wo))),
             &mut || wo.iter().for_each(|wo| keep(raw8.prepare8(wo))),
         );
@@ -300,29 +300,84 @@ impl Run<'_> {
             .iter()
             .map(|xi| (xi[0] * 6.0) as u32)
             .collect();
-        let (fit, raw) = (
-            MaterialTable {
-                materials: &fit,
-                index: &index,
-            },
-            MaterialTable {
-                materials: &raw,
-                index: &index,
-            },
-        );
+        let references: Vec<_> = raw.iter().collect();
+        let by_reference = |columns: &mut Columns| {
+            let (HitColumns { wo: [u, v, w], .. }, [x, y, z], _, out, _) = columns.parts();
+            let (Some([r, g, b]), Some(pdf)) = (out.value, out.pdf) else {
+                unreachable!("all are asked for")
+            };
+            let (from, to) = ([u, v, w, x, y, z], [r, g, b, pdf]);
+            in_groups(
+                &index,
+                from,
+                to,
+                1,
+                |index, [u, v, w, x, y, z], [r, g, b, pdf]| {
+                    let hits = HitColumns {
+                        wo: [u, v, w],
+                        h: None,
+                    };
+                    let out = EvalColumns {
+                        value: Some([r, g, b]),
+                        pdf: Some(pdf),
+                    };
+                    keep(
+                        references[index[0] as usize]
+                            .eval_hits(hits, [x, y, z], out)
+                            .is_ok(),
+                    );
+                },
+            );
+        };
+        let fit = MaterialTable {
+            materials: &fit,
+            index: &index,
+        };
+        let table = MaterialTable {
+            materials: &raw,
+            index: &index,
+        };
+        // Sixty-four materials by turns: two hits of each in a chunk.
+        let many: Vec<_> = (0..64).map(|i| raw[i % 6]).collect();
+        let turns: Vec<u32> = (0..64).cycle().take(index.len()).collect();
+        let turns = MaterialTable {
+            materials: &many,
+            index: &turns,
+        };
         let [mut ours, mut base] = [(); 2].map(|()| Columns::new(self.inputs));
-        self.pair(
-            "eval_hits of six materials, Conserving over raw",
-            level.name(),
-            DIRECTIONS,
-            || {
-                let (hits, wi, _, out, _) = ours.parts();
-                black_box(fit.eval_hits(hits, wi, out).is_ok());
+        let mut row = |call, ours_call: &dyn Fn(&mut Columns), base_call: &dyn Fn(&mut Columns)| {
+            let (ours, base) = (|| ours_call(&mut ours), || base_call(&mut base));
+            self.pair(call, level.name(), DIRECTIONS, ours, base);
+        };
+        let of_six = |columns: &mut Columns| {
+            let (hits, wi, _, out, _) = columns.parts();
+            keep(table.eval_hits(hits, wi, out).is_ok());
+        };
+        let of_one = |columns: &mut Columns| {
+            let (hits, wi, _, out, _) = columns.parts();
+            keep(raw[0].eval_hits(hits, wi, out).is_ok());
+        };
+        row(
+            "eval_hits of six materials: Conserving over raw",
+            &|columns| {
+                let (hits, wi, _, out, _) = columns.parts();
+                keep(fit.eval_hits(hits, wi, out).is_ok());
             },
-            || {
-                let (hits, wi, _, out, _) = base.parts();
-                black_box(raw.eval_hits(hits, wi, out).is_ok());
+            &of_six,
+        );
+        row("eval_hits of six materials over one", &of_six, &of_one);
+        row(
+            "eval_hits by references over a table",
+            &by_reference,
+            &of_six,
+        );
+        row(
+            "eval_hits of a material per hit over one",
+            &|columns| {
+                let (hits, wi, _, out, _) = columns.parts();
+                keep(turns.eval_hits(hits, wi, out).is_ok());
             },
+            &of_one,
         );
     }
 }

@@ -1,9 +1,11 @@
 //! Arguments of calls on columns: a slice per component, of one length, which is checked.
 
 mod frames;
+mod groups;
 
 pub use crate::handle::{HitsError, MaterialTable};
 pub use frames::FrameColumns;
+pub use groups::in_groups;
 
 use crate::simd::columns::Columns;
 use core::fmt;

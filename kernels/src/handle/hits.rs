@@ -2,7 +2,7 @@
 
 use crate::columns::{
     EvalColumns, HitColumns, LengthError, SAMPLE, SAMPLE_OF_BOTH, SampleColumns, VALUE_PDF, WI, XI,
-    check_length,
+    check_length, in_groups,
 };
 use crate::handle::kernels::{AtHits, EightHits, HitEvals, HitEvalsSamples, HitRow, HitSamples};
 use crate::model::Model;
@@ -15,7 +15,8 @@ use wide::f32x8;
 
 /// Materials of a slice call: a table, and the index of each hit's material in it.
 ///
-/// Eight hits in a row with one material take the path of [`Material::eval_hits`]; hits sorted by material are the fastest.
+/// Hits in any order on a few materials take little longer than hits sorted by material: they are brought together, as by
+/// [`in_groups`]. Where each hit has a material of its own, each takes some ten times as long.
 #[derive(Debug)]
 pub struct MaterialTable<'a, M: Model> {
     /// The materials.
@@ -294,11 +295,11 @@ impl<M: Model> MaterialTable<'_, M> {
         self.run::<HitEvalsSamples, _, _>(inputs, outputs)
     }
 
-    /// Runs of one material as slice calls, and the rest eight hits at a time, one material per lane.
+    /// Materials with several hits in a chunk as slice calls, and the rest eight hits at a time, one material per lane.
     fn run<K: HitRow<M, I, N>, const I: usize, const N: usize>(
         &self,
         inputs: [&[f32]; I],
-        mut outputs: [&mut [f32]; N],
+        outputs: [&mut [f32]; N],
     ) -> Result<(), HitsError> {
         clean_upper_halves();
         check_length(inputs[0].len(), "index", Some(self.index))?;
@@ -320,42 +321,29 @@ impl<M: Model> MaterialTable<'_, M> {
             .materials
             .first()
             .map_or_else(Level::portable, Material::level);
-        let (mut at, mut rest) = (0, self.index);
-        while let [index, ..] = rest
-            && let Some(first) = material(*index)
-        {
-            let alike = rest.iter().take_while(|other| *other == index).count();
-            let done = if alike >= 8 || alike == rest.len() {
-                alike
+        in_groups(self.index, inputs, outputs, 8, |index, inputs, outputs| {
+            let mut known = index.iter().filter_map(|index| material(*index));
+            let Some(first) = known.next() else { return };
+            if index.iter().all(|other| Some(other) == index.first()) {
+                return first.with_level(level).run::<K, I, N>(inputs, outputs);
+            }
+            // Lanes past the last hit have the material of the first.
+            let mut lanes = [first; 8];
+            for (lane, material) in lanes.iter_mut().skip(1).zip(known) {
+                *lane = material;
+            }
+            let material = Material8::pack(lanes).with_level(level);
+            let mut outputs = outputs;
+            if material.integrating().is_some() {
+                in_packets::<M, K, I, N>(inputs, &mut outputs, |hits| material.prepare8(hits));
             } else {
-                rest.len().min(8)
-            };
-            let inputs = inputs.map(|column| column.get(at..at + done).unwrap_or_default());
-            let mut outputs = outputs
-                .each_mut()
-                .map(|column| column.get_mut(at..at + done).unwrap_or_default());
-            if done == alike {
-                first.with_level(level).run::<K, I, N>(inputs, outputs);
-            } else {
-                // Lanes past the last hit have the material of the first.
-                let mut lanes = [first; 8];
-                for (lane, index) in lanes.iter_mut().zip(rest) {
-                    *lane = material(*index).unwrap_or(first);
-                }
-                let material = Material8::pack(lanes).with_level(level);
-                if material.integrating().is_some() {
-                    in_packets::<M, K, I, N>(inputs, &mut outputs, |hits| material.prepare8(hits));
-                } else {
-                    let input = inputs.map(packet);
-                    let row = EightHits::<M, K, I, N>::new(&material.constants, &input);
-                    for (lanes, column) in level.run(row).iter().zip(outputs) {
-                        copy_few(lanes.as_array(), column);
-                    }
+                let input = inputs.map(packet);
+                let row = EightHits::<M, K, I, N>::new(&material.constants, &input);
+                for (lanes, column) in level.run(row).iter().zip(outputs) {
+                    copy_few(lanes.as_array(), column);
                 }
             }
-            at += done;
-            rest = rest.get(done..).unwrap_or_default();
-        }
+        });
         Ok(())
     }
 }
