@@ -176,7 +176,7 @@ pub struct Shader {
     /// Compute this field of the results alone, and nothing that others need; may be given several times
     #[arg(long, value_name = "FIELD")]
     pub only: Vec<String>,
-    /// Print the gradients of `eval` and `eval_hit` as well
+    /// Print the gradients of `material`, `eval` and `eval_hit` as well
     #[arg(long)]
     pub gradient: bool,
     /// Add the materials of this file, JSON as `hairis eval` reads, as functions named after it
@@ -211,6 +211,8 @@ pub enum ShaderTarget {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
 pub enum ShaderCall {
+    /// Constants of a material, from its parameters
+    Material,
     /// Constants of a shading point
     Prepare,
     /// Value and density of a shading point at a direction

@@ -26,7 +26,8 @@ pub(crate) use sampling::{FoldedXi, direction_from_angles};
 pub(crate) use view::prepare as prepare_view;
 
 use crate::model::lobe::times;
-use crate::model::{Eval, Hit, LobeEval, Model, SampleLanes};
+use crate::model::{Eval, Hit, LobeEval, Model, Precision, SampleLanes};
+use crate::params::HairDesc;
 use crate::simd::{Broadcast, Lanes, Scalar, Vec3x, lanes4};
 use crate::{HairParams, LobeMask, PerLobe};
 
@@ -45,6 +46,15 @@ pub const GRAZING: f32 = 1e-5;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Published<B>(pub B);
 
+impl<B: Bell> Published<B> {
+    /// The constants of a material in any [`Precision`], of a description that is not checked.
+    #[inline]
+    #[must_use]
+    pub fn constants<W: Precision>(&self, desc: &HairDesc<W::Lane>) -> PublishedMaterial<W::Lane> {
+        PublishedMaterial::of::<B, W>(self.0, desc)
+    }
+}
+
 impl<B: Bell> Model for Published<B> {
     type Params = HairParams;
     type Material<C: Scalar> = PublishedMaterial<C>;
@@ -56,7 +66,7 @@ impl<B: Bell> Model for Published<B> {
 
     #[inline]
     fn material(&self, params: &HairParams) -> PublishedMaterial<f32> {
-        PublishedMaterial::of(self.0, params)
+        self.constants::<f64>(params.desc())
     }
 
     #[inline(always)]

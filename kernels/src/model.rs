@@ -8,6 +8,7 @@ mod direction;
 pub(crate) mod lobe;
 mod lobe_model;
 pub mod math;
+pub(crate) mod precision;
 
 pub use crate::hair::{Bell, FourBells, GRAZING, MatchedBell, TwoBells};
 pub use crate::handle::{DynBsdf, DynBsdf8};
@@ -17,6 +18,7 @@ pub use lobe::{Lobe, LobeMask, PerLobe};
 pub use lobe_model::LobeModel;
 #[doc(hidden)]
 pub use lobe_model::Mixed;
+pub use precision::{Precision, Single};
 
 use crate::simd::{Broadcast, LaneStruct, Lanes, Path, Scalar, Schedule, Vec3x};
 use glam::{Vec3, Vec3A};

@@ -82,6 +82,11 @@ impl Bell for Cauchy {
         at.cauchy
     }
 
+    #[inline(always)]
+    fn area<L: Lanes>(lo: L, hi: L) -> L {
+        Self::closed_area(lo, hi)
+    }
+
     #[inline]
     fn width_factor(&self) -> f32 {
         self.width_factor

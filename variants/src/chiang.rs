@@ -68,7 +68,9 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
 
     #[inline]
     fn material(&self, params: &ChiangParams) -> ChiangMaterial<f32> {
-        ChiangMaterial::new(params)
+        let d = params.desc();
+        let small_angle = d.shifts == Shifts::SmallAngle;
+        ChiangMaterial::new::<f64>([d.beta_m, d.beta_n, d.tilt, d.eta], d.sigma_a, small_angle)
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! The published model and its variants in the registry: parameters and names.
 
 use crate::{Cauchy, Field, Kind, Parameters, Registered, Values};
-use hairis::model::MatchedBell;
+use hairis::model::{MatchedBell, Precision};
 use hairis::params::{HairDesc, Rule};
 use hairis::{Gaussian, HairParams, Matched, ParamError, Published};
 
@@ -116,7 +116,7 @@ impl Parameters for HairParams {
 /// If the values are of another model.
 #[inline]
 #[must_use]
-pub fn hair_desc<T: Copy + Default>(values: &Values<T>) -> HairDesc<T> {
+pub fn hair_desc<T: Copy>(values: &Values<T>) -> HairDesc<T> {
     HairDesc {
         alpha: values.get_at(0),
         beta: values.get_at(1),
@@ -152,6 +152,11 @@ impl<B: RegisteredBell> Registered for Published<B> {
     const NAME: &'static str = B::NAME;
     const CHOICE: Option<(&'static str, &'static str)> = Some(("sampler", "published"));
     const MODEL: Self = Self(B::BELL);
+
+    #[inline]
+    fn constants<W: Precision>(values: &Values<W::Lane>) -> Self::Material<W::Lane> {
+        Self::MODEL.constants::<W>(&hair_desc(values))
+    }
 }
 
 /// Word of the matched sampler: `matched` for nine bands, the default, and `matched-` with their
@@ -184,4 +189,9 @@ impl<B: RegisteredBell, const BANDS: usize> Registered for Matched<B, BANDS> {
     const NAME: &'static str = B::NAME;
     const CHOICE: Option<(&'static str, &'static str)> = Some(("sampler", Word::<BANDS>::WORD));
     const MODEL: Self = Self(B::BELL);
+
+    #[inline]
+    fn constants<W: Precision>(values: &Values<W::Lane>) -> Self::Material<W::Lane> {
+        Self::MODEL.constants::<W>(&hair_desc(values))
+    }
 }

@@ -10,7 +10,7 @@ use hairis::model::math::{
     GAUSS_LEGENDRE_32, gaussian, gaussian_and_complement, half_atan2, log2_near_one, log2_one_plus,
     sin_cos_half_turn,
 };
-use hairis::model::{Direction, LobeEval, LobeModel};
+use hairis::model::{Direction, LobeEval, LobeModel, Precision};
 use hairis::simd::{Broadcast, Choice, Lanes, Scalar, lane_struct, lanes3};
 use hairis::{Hit, PerLobe};
 
@@ -81,6 +81,34 @@ fn power<L: Lanes>(reciprocal: L::Mask, cos: L) -> L {
     cos * L::select(reciprocal, cos, L::splat(1.0))
 }
 
+/// The constants of a material; the mask is set for the reciprocal form.
+#[inline]
+fn constants<W: Precision>(
+    kd: [W::Lane; 3],
+    ks: [W::Lane; 3],
+    exponent: W::Lane,
+    reciprocal: <W::Lane as Lanes>::Mask,
+) -> KajiyaKayMaterial<W::Lane> {
+    let (c, one) = (W::constant, W::constant(1.0));
+    let lane = <W::Lane as Lanes>::splat;
+    let p = W::of(exponent);
+    let b = cosine_integral(p + one);
+    let m = W::select(reciprocal, c(2.0), one);
+    let narrowing = W::select(reciprocal, one, (p + one) * b * b);
+    let pi = c(core::f64::consts::PI);
+    KajiyaKayMaterial {
+        kd,
+        ks,
+        mean: [kd, ks].map(|[r, g, b]| r / lane(3.0) + g / lane(3.0) + b / lane(3.0)),
+        reciprocal: <W::Lane as Lanes>::keep(reciprocal, lane(1.0)),
+        exponent: exponent * -LN_2,
+        inv_exponent: lane(-4.0 * LN_2) / exponent,
+        peak: (c(0.5) / (pi * cosine_integral(p + m))).rounded(),
+        density: (one / (pi * cosine_integral(p))).rounded(),
+        grazing: (one / ((p + one) * narrowing)).rounded(),
+    }
+}
+
 impl LobeModel for KajiyaKay {
     type Params = KajiyaKayParams;
     type Material<C: Scalar> = KajiyaKayMaterial<C>;
@@ -89,10 +117,6 @@ impl LobeModel for KajiyaKay {
     const LOBES: &'static [&'static str] = &["diffuse", "specular"];
     const CONSERVES: bool = true;
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "constants of a material, computed in f64"
-    )]
     #[inline]
     fn material(&self, params: &KajiyaKayParams) -> KajiyaKayMaterial<f32> {
         let KajiyaKayDesc {
@@ -101,24 +125,7 @@ impl LobeModel for KajiyaKay {
             exponent,
             form,
         } = *params.desc();
-        let (p, reciprocal) = (f64::from(exponent), form == Form::Reciprocal);
-        let b = cosine_integral(p + 1.0);
-        let (m, narrowing) = if reciprocal {
-            (2.0, 1.0)
-        } else {
-            (1.0, (p + 1.0) * b * b)
-        };
-        KajiyaKayMaterial {
-            kd,
-            ks,
-            mean: [kd, ks].map(|[r, g, b]| r / 3.0 + g / 3.0 + b / 3.0),
-            reciprocal: f32::from(u8::from(reciprocal)),
-            exponent: -LN_2 * exponent,
-            inv_exponent: -4.0 * LN_2 / exponent,
-            peak: (0.5 / (core::f64::consts::PI * cosine_integral(p + m))) as f32,
-            density: (1.0 / (core::f64::consts::PI * cosine_integral(p))) as f32,
-            grazing: (1.0 / ((p + 1.0) * narrowing)) as f32,
-        }
+        constants::<f64>(kd, ks, exponent, form == Form::Reciprocal)
     }
 
     #[inline(always)]

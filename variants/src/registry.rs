@@ -7,7 +7,7 @@
 mod any;
 
 use crate::{AllCauchy, Cauchy, Chiang, Field, KajiyaKay, Parameters, Values};
-use hairis::model::Model;
+use hairis::model::{Model, Precision};
 use hairis::{Gaussian, Matched, Published};
 
 #[cfg(feature = "any")]
@@ -35,6 +35,10 @@ pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
     const NEAR_FIELD: bool = false;
     /// Name of the lobes' colours in reports; `None` if they are not reported.
     const COLORS: Option<&'static str> = None;
+
+    /// The constants of a material in any [`Precision`], from values that are not checked: those of the fields that
+    /// [`Parameters::values`] gives. A word is its place in the list.
+    fn constants<W: Precision>(values: &Values<W::Lane>) -> Self::Material<W::Lane>;
 }
 
 /// Work on a model of the list as a type: see [`ModelId::visit`].

@@ -168,6 +168,7 @@ fn spirv(_: &Program) -> Result<Vec<u8>, Error> {
 /// Functions that the flags name.
 fn functions(flags: &Shader, program: &Program) -> Result<Vec<Function>, Error> {
     let calls = flags.calls.iter().map(|call| match call {
+        ShaderCall::Material => Call::Material,
         ShaderCall::Prepare => Call::Prepare,
         ShaderCall::Eval => Call::Eval,
         ShaderCall::Sample => Call::Sample,
@@ -208,8 +209,9 @@ fn functions(flags: &Shader, program: &Program) -> Result<Vec<Function>, Error> 
                 }
             }
         };
-        let gradient = (flags.gradient && matches!(call, Call::Eval | Call::EvalHit))
-            .then(|| function.gradient());
+        let gradient = (flags.gradient
+            && matches!(call, Call::Material | Call::Eval | Call::EvalHit))
+        .then(|| function.gradient());
         functions.push(function);
         functions.extend(gradient);
     }

@@ -64,16 +64,16 @@ fn compress<L: Lanes>(x: L) -> [L; 2] {
     ]
 }
 
-/// Integral of a bell of width `width` over `[lo, hi]`, about its centre at 0.
+/// Integral of a bell over `[lo, hi]`, in widths from its centre.
 #[inline]
-pub(super) fn bell_area<B: Bell>(lo: f32, hi: f32, width: f32) -> f32 {
-    let nodes = Nodes::between(f32::quotient(lo, width), f32::quotient(hi, width));
-    let mut sum = 0.0;
+pub(super) fn bell_area<B: Bell, L: Lanes>(lo: L, hi: L) -> L {
+    let (one, nodes) = (L::splat(1.0), Nodes::between(lo, hi));
+    let mut sum = L::splat(0.0);
     for node in GRADED {
         let (x, dx) = nodes.at(node);
-        sum += B::one(x * x, f32::quotient(1.0, 1.0 + x * x)) * dx;
+        sum = sum + B::one(x * x, L::quotient(one, one + x * x)) * dx;
     }
-    sum * width
+    sum
 }
 
 /// Directional albedo of each lobe, linear RGB; 0 where `wo` is no direction.

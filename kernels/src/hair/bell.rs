@@ -1,5 +1,7 @@
 //! The bell curves that the published model is built of: its extension point.
 
+use super::albedo::bell_area;
+use super::matched::MatchedBell;
 use crate::model::math::gaussian;
 use crate::simd::Lanes;
 use crate::simd::pair::Pair;
@@ -50,6 +52,15 @@ pub trait Bell: Copy {
             Self::one(at.s_trt, at.cauchy_trt),
             Self::two(at.glint),
         ]
+    }
+
+    /// Integral from `lo` to `hi`, in widths from the centre, for [`Single`](crate::model::Single).
+    ///
+    /// Provided: a quadrature.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn area<L: Lanes>(lo: L, hi: L) -> L {
+        bell_area::<Self, L>(lo, hi)
     }
 
     /// A factor on every width of the material, finite and at least 0.5; it is read once per material.
@@ -117,5 +128,10 @@ impl Bell for Gaussian {
         let Pair(r, tt) = gaussian(Pair(at.s_r, at.tt.s + at.tt.t));
         let Pair(trt, glint) = gaussian(Pair(at.s_trt, at.glint.s + at.glint.t));
         [r, tt, trt, glint]
+    }
+
+    #[inline(always)]
+    fn area<L: Lanes>(lo: L, hi: L) -> L {
+        Self::closed_area(lo, hi)
     }
 }

@@ -17,7 +17,8 @@ use crate::hair::{
     Angles, LobeTerms, albedo, finish_eval, finish_lobes, finish_sample, mix_densities,
 };
 use crate::model::lobe::times;
-use crate::model::{Eval, Hit, LobeEval, Model, SampleLanes};
+use crate::model::{Eval, Hit, LobeEval, Model, Precision, SampleLanes};
+use crate::params::HairDesc;
 use crate::simd::pair::Pair;
 use crate::simd::portable::Unfused;
 use crate::simd::{Broadcast, Lanes, Scalar, Vec3x};
@@ -94,6 +95,15 @@ impl<B> Matched<B> {
     }
 }
 
+impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Matched<B, BANDS, BY_CHANNEL> {
+    /// The constants of a material in any [`Precision`], of a description that is not checked.
+    #[inline]
+    #[must_use]
+    pub fn constants<W: Precision>(&self, desc: &HairDesc<W::Lane>) -> MatchedMaterial<W::Lane> {
+        MatchedMaterial::of::<B, W>(self.0, desc)
+    }
+}
+
 impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
     for Matched<B, BANDS, BY_CHANNEL>
 {
@@ -107,7 +117,7 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
 
     #[inline]
     fn material(&self, params: &HairParams) -> MatchedMaterial<f32> {
-        MatchedMaterial::of(self.0, params)
+        self.constants::<f64>(params.desc())
     }
 
     #[inline(always)]

@@ -1,11 +1,12 @@
 //! Constants of the published sampler: per material, and per material and direction (section 3.3 of the paper).
 
-use super::view::{self, HairLobes, HairView};
+use super::view::{self, HairLobes, HairView, intensities};
+use crate::LobeMask;
 use crate::hair::truncated::TruncatedCauchy;
-use crate::model::Bell;
 use crate::model::lobe::times;
+use crate::model::{Bell, Precision};
+use crate::params::HairDesc;
 use crate::simd::{Broadcast, Lanes, Vec3x, lanes4, store4};
-use crate::{HairParams, LobeMask};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 crate::simd::lane_struct! {
@@ -74,24 +75,25 @@ pub(crate) fn selection<L: Lanes>(energy: [L; 4]) -> ([L; 4], [L; 3], L) {
     (p, bounds, inv_total)
 }
 
-impl PublishedMaterial<f32> {
-    /// The material of checked parameters.
+impl<L: Lanes<Stored = L>> PublishedMaterial<L> {
+    /// The material of a description, whose ranges are those of checked parameters.
     #[inline]
     #[must_use]
-    pub(super) fn of<B: Bell>(bell: B, params: &HairParams) -> Self {
-        let lobes = HairLobes::of(bell, params);
-        let phi_g = params.desc().phi_g;
-        let [gamma_tt, gamma_g] = lobes.half_gamma.map(|half| 2.0 * half);
-        let glint = TruncatedCauchy::new(-phi_g, FRAC_PI_2 - phi_g, gamma_g);
-        let tt = TruncatedCauchy::new(0.0, PI, gamma_tt);
-        let [b_r, b_tt, b_trt, _] = lobes.beta;
-        let (p, bounds, _) = selection(energies(&[b_r, b_tt, b_trt], gamma_tt, gamma_g, params));
+    pub(super) fn of<B: Bell, W: Precision<Lane = L>>(bell: B, d: &HairDesc<L>) -> Self {
+        let c = L::splat;
+        let lobes = HairLobes::of::<B, W>(bell, d);
+        let phi_g = d.phi_g;
+        let [gamma_tt, gamma_g] = lobes.half_gamma.map(|half| half * 2.0);
+        let glint = TruncatedCauchy::new(-phi_g, c(FRAC_PI_2) - phi_g, gamma_g);
+        let tt = TruncatedCauchy::new(c(0.0), c(PI), gamma_tt);
+        let energy = energies::<W>(lobes.beta, [gamma_tt, gamma_g], d);
+        let (p, bounds, _) = selection(energy);
         let sampler = PublishedConstants {
             azimuth_middle: [tt.tan_mid, glint.tan_mid],
             azimuth_span: [-tt.span, glint.span],
             azimuth_density: [
-                f32::quotient(0.5, tt.span * gamma_tt),
-                f32::quotient(0.5, glint.span * gamma_g),
+                L::quotient(c(0.5), tt.span * gamma_tt),
+                L::quotient(c(0.5), glint.span * gamma_g),
             ],
             selection: p,
             bounds,
@@ -105,32 +107,35 @@ const LEAST_SHARE: f64 = 1e-30;
 
 /// Energy of each lobe as section 3.2.3 of the paper estimates it, to the scale of the largest.
 ///
-/// In double precision: the product of two of the largest legal intensities overflows a float.
+/// The product of two of the largest legal intensities overflows a float.
 #[inline]
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "shares of the largest, 0 or in [1e-30, 1]"
-)]
-fn energies(beta: &[f32; 3], gamma_tt: f32, gamma_g: f32, params: &HairParams) -> [f32; 4] {
+fn energies<W: Precision>(
+    beta: [W::Lane; 4],
+    [gamma_tt, gamma_g]: [W::Lane; 2],
+    d: &HairDesc<W::Lane>,
+) -> [W::Lane; 4] {
     use core::f64::consts::PI;
-    let d = params.desc();
-    let mean = |rgb: [f32; 3]| rgb.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
-    let (i_r, i_tt, i_trt) = (mean(d.i_r), mean(d.i_tt), mean(d.i_trt));
-    let root = 4.0 * libm::sqrt(2.0 * PI);
-    let energy = [
-        root * f64::from(beta[0]) * i_r,
-        2.0 * PI * f64::from(beta[1]) * f64::from(gamma_tt) * i_tt,
-        root * f64::from(beta[2]) * i_trt,
-        4.0 * PI * f64::from(beta[2]) * f64::from(gamma_g) * i_trt * f64::from(d.i_g),
+    let (c, zero) = (W::constant, W::constant(0.0));
+    let (colors, [of_r, of_tt, of_trt, of_glint]) = intensities::<W>(d);
+    let [i_r, i_tt, i_trt] = colors.map(|[r, g, b]| (r + g + b) / c(3.0));
+    let root = c(4.0 * libm::sqrt(2.0 * PI));
+    let [r, tt, trt, glint] = [
+        root * W::of(beta[0]) * i_r * of_r,
+        c(2.0 * PI) * W::of(beta[1]) * W::of(gamma_tt) * i_tt * of_tt,
+        root * W::of(beta[2]) * i_trt * of_trt,
+        c(4.0 * PI) * W::of(beta[2]) * W::of(gamma_g) * i_trt * of_glint,
     ];
-    let largest = energy.iter().fold(0.0, |a: f64, e| a.max(*e));
-    energy.map(|e| {
-        if e > 0.0 {
-            (e / largest).max(LEAST_SHARE) as f32
-        } else {
-            0.0
-        }
-    })
+    let largest = r.max(tt).max(trt).max(glint);
+    let share = |energy: W, intensity: W| {
+        let share = (energy / largest).max(c(LEAST_SHARE));
+        W::select(zero.lt(intensity), share, zero).rounded()
+    };
+    [
+        share(r, i_r * of_r),
+        share(tt, i_tt * of_tt),
+        share(trt, i_trt * of_trt),
+        share(glint, i_trt * of_glint),
+    ]
 }
 
 /// Truncated Cauchy of a lobe's inclination: the ends are those of all lobes, but for the shift.

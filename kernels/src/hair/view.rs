@@ -1,11 +1,12 @@
 //! Lobes of a material, and the view terms of a shading point: shared by all samplers of the published model.
 
 use super::albedo::bell_area;
-use crate::model::Bell;
+use crate::LobeMask;
 use crate::model::lobe::times;
 use crate::model::math::{FRAC_PI_2_LOW, half_atan2_parts};
+use crate::model::{Bell, Precision};
+use crate::params::HairDesc;
 use crate::simd::{Broadcast, Lanes, Vec3x, lanes3, store3, store4};
-use crate::{HairParams, LobeMask};
 use core::f32::consts::PI;
 
 crate::simd::lane_struct! {
@@ -62,45 +63,92 @@ crate::simd::lane_struct! {
     }
 }
 
-impl HairLobes<f32> {
-    /// The lobes of checked parameters.
+impl<L: Lanes<Stored = L>> HairLobes<L> {
+    /// The lobes of a description, whose ranges are those of checked parameters.
     #[inline]
     #[must_use]
-    pub(crate) fn of<B: Bell>(bell: B, params: &HairParams) -> Self {
-        let d = params.desc();
+    pub(crate) fn of<B: Bell, W: Precision<Lane = L>>(bell: B, d: &HairDesc<L>) -> Self {
+        let (c, one, pi) = (L::splat, L::splat(1.0), L::splat(PI));
         let k = bell.width_factor();
         // Below 5e-5 rad the product of four Cauchy denominators overflows far from the centres.
         let [b_r, b_tt, b_trt, gamma_tt, gamma_g] =
             [d.beta[0], d.beta[1], d.beta[2], d.gamma_tt, d.gamma_g]
-                .map(|width| (width * k).max(5e-5));
+                .map(|width| (width * k).max(c(5e-5)));
         let phi_g = d.phi_g;
         // The float next to pi is above it by a thousandth of the least width.
-        let to_back = (PI - phi_g) + 2.0 * FRAC_PI_2_LOW;
+        let to_back = (pi - phi_g) + 2.0 * FRAC_PI_2_LOW;
         // Glints of absurd strength take the excess from the colour, so that their product overflows last.
-        let excess = (d.i_g * 1e-6).max(1.0);
+        let excess = (d.i_g * 1e-6).max(one);
+        let area = |lo: L, hi: L, width: L| {
+            let (lo, hi) = (L::quotient(lo, width), L::quotient(hi, width));
+            let area = if W::IS_DOUBLE {
+                bell_area::<B, L>(lo, hi)
+            } else {
+                B::area(lo, hi)
+            };
+            area * width
+        };
         Self {
             alpha: d.alpha,
             beta: [b_r, b_tt, b_trt, b_trt],
-            inv_beta: [b_r, b_tt, b_trt].map(|b| f32::quotient(1.0, b)),
-            half_gamma: [0.5 * gamma_tt, 0.5 * gamma_g],
-            inv_half_gamma: [f32::quotient(2.0, gamma_tt), f32::quotient(2.0, gamma_g)],
-            half_phi_g: 0.5 * phi_g,
-            half_back_g: 0.5 * to_back,
+            inv_beta: [b_r, b_tt, b_trt].map(|b| L::quotient(one, b)),
+            half_gamma: [gamma_tt * 0.5, gamma_g * 0.5],
+            inv_half_gamma: [L::quotient(c(2.0), gamma_tt), L::quotient(c(2.0), gamma_g)],
+            half_phi_g: phi_g * 0.5,
+            half_back_g: to_back * 0.5,
             azimuth_area: [
-                bell_area::<B>(-PI, PI, gamma_tt),
-                2.0 * bell_area::<B>(-phi_g, to_back, gamma_g),
+                area(-pi, pi, gamma_tt),
+                area(-phi_g, to_back, gamma_g) * 2.0,
             ],
             color_r: d.i_r,
             color_tt: d.i_tt,
-            color_trt: d.i_trt.map(|c| (c * excess).min(f32::MAX)),
+            color_trt: d.i_trt.map(|x| (x * excess).min(c(f32::MAX))),
             strength: [
-                1.0,
-                1.0,
-                f32::quotient(1.0, excess),
-                f32::quotient(d.i_g, excess),
+                one,
+                one,
+                L::quotient(one, excess),
+                L::quotient(d.i_g, excess),
             ],
         }
     }
+}
+
+/// Least share of the brightest lobe that [`intensities`] tells from others in single precision.
+const LEAST_SHARE: f32 = 1e-30;
+
+/// Intensities of R, TT and TRT, and the factor of each lobe on its own, of which the glints have that of TRT. The products of both
+/// are on a common scale.
+#[inline]
+pub(crate) fn intensities<W: Precision>(d: &HairDesc<W::Lane>) -> ([[W; 3]; 3], [W; 4]) {
+    let c = <W::Lane as Lanes>::splat;
+    let (colors, one) = ([d.i_r, d.i_tt, d.i_trt], c(1.0));
+    if W::IS_DOUBLE {
+        let factors = [one, one, one, d.i_g];
+        return (colors.map(|rgb| rgb.map(W::of)), factors.map(W::of));
+    }
+    // Each lobe to the scale of its brightest channel, and these to the scale of the brightest lobe: no product overflows.
+    let least = c(f32::MIN_POSITIVE);
+    let largest = colors.map(|[r, g, b]| r.max(g).max(b));
+    let brightest = largest[0].max(largest[1]).max(largest[2]).max(least);
+    let [r, tt, trt] = largest.map(|x| <W::Lane as Lanes>::quotient(x, brightest));
+    let glint = trt * d.i_g;
+    let by = one.max(glint);
+    let factor = |x: W::Lane, is_there: W::Lane| {
+        let share = <W::Lane as Lanes>::quotient(x, by).max(c(LEAST_SHARE));
+        W::of(<W::Lane as Lanes>::keep(c(0.0).lt(is_there), share))
+    };
+    (
+        core::array::from_fn(|lobe| {
+            let most = largest[lobe].max(least);
+            colors[lobe].map(|x| W::of(<W::Lane as Lanes>::quotient(x, most)))
+        }),
+        [
+            factor(r, largest[0]),
+            factor(tt, largest[1]),
+            factor(trt, largest[2]),
+            factor(glint, largest[2].min(d.i_g)),
+        ],
+    )
 }
 
 /// The lobes of a material seen from `wo`.

@@ -13,22 +13,26 @@
 //! assert!(program.function(Call::Eval).operations() < program.function(Call::EvalHit).operations());
 //! ```
 
+mod call;
 mod double;
 mod function;
 mod gradient;
 mod graph;
+mod material;
 mod print;
 mod program;
 mod record;
 #[cfg(feature = "spirv")]
 pub mod spirv;
 
+pub use call::{Call, Target};
 pub use function::{Argument, Function};
 pub use graph::{Graph, Kind, Line, Node, Rounding};
+pub use material::parameters;
 pub use print::{Language, driver, print};
+pub use program::Program;
 #[doc(hidden)]
 pub use program::every_operation;
-pub use program::{Call, Program, Target};
 pub use record::{Field, Record, Shape, numbers};
 
 /// Examples of the package's README.

@@ -4,9 +4,10 @@ mod driver;
 mod operations;
 mod syntax;
 
+use crate::call::Call;
 use crate::function::{Argument, Function};
 use crate::graph::{Kind, Line};
-use crate::program::{Call, Program};
+use crate::program::Program;
 use crate::record::{Field, Record, Shape};
 use core::fmt::Write as _;
 pub use driver::driver;
@@ -123,8 +124,8 @@ fn type_name(program: &Program, record: &Record) -> String {
 pub fn print(program: &Program, language: Language) -> String {
     let mut out = head(program, language);
     let mut known = Vec::new();
-    let materials = program.materials().iter();
-    for function in materials.chain(program.functions()) {
+    let constants = program.presets().iter().chain(program.materials());
+    for function in constants.chain(program.functions()) {
         let records = function
             .arguments()
             .iter()
@@ -163,8 +164,11 @@ fn declare(out: &mut String, program: &Program, language: Language, record: &Rec
     };
     out.push_str(&open);
     out.push('\n');
-    for Field { name, shape } in &record.fields {
+    for Field { name, shape, doc } in &record.fields {
         let (of, after) = language.shape(*shape);
+        if !doc.is_empty() {
+            let _ = writeln!(out, "    // {doc}");
+        }
         out.push_str(&match language {
             Language::Wgsl => format!("    {name}: {of},\n"),
             _ => format!("    {of} {name}{after};\n"),

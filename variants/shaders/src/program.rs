@@ -1,7 +1,9 @@
 //! The functions of a model.
 
+use crate::call::{Call, Target};
 use crate::function::{Argument, Function};
 use crate::graph::{Graph, Lane, input, record};
+use crate::material::{material, parameters, params};
 use crate::record::{Field, Record, Shape, numbers};
 use hairis::Eval;
 use hairis::Hit;
@@ -9,83 +11,6 @@ use hairis::model::{Model, SampleLanes};
 use hairis::simd::trace::{Arithmetic, Exact, Fused, Gpu, GpuNative, Op};
 use hairis::simd::{LaneStruct, Path, Vec3x};
 use hairis_variants::{Parameters, Registered};
-
-/// Arithmetic of the target.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Target {
-    /// Products and sums round apart: the bits of one lane.
-    Exact,
-    /// Products with sums round once: the bits of a level that fuses.
-    Fused,
-    /// Products with sums may round once or twice, as `fma` of WGSL.
-    Gpu,
-    /// As [`Gpu`](Self::Gpu), with `exp2` and `log2` of the target.
-    GpuNative,
-}
-
-/// A function of a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Call {
-    /// Material and hit to the constants of a shading point.
-    Prepare,
-    /// Value and density at a direction.
-    Eval,
-    /// A sampled direction.
-    Sample,
-    /// Value, colour and density of each lobe at a direction.
-    Lobes,
-    /// [`Prepare`](Self::Prepare) and [`Eval`](Self::Eval) in one.
-    EvalHit,
-    /// [`Prepare`](Self::Prepare) and [`Sample`](Self::Sample) in one.
-    SampleHit,
-    /// [`Prepare`](Self::Prepare), [`Eval`](Self::Eval) and [`Sample`](Self::Sample) in one: a bounce with one light.
-    EvalSampleHit,
-}
-
-impl Call {
-    /// Every function.
-    pub const ALL: [Self; 7] = [
-        Self::Prepare,
-        Self::Eval,
-        Self::Sample,
-        Self::Lobes,
-        Self::EvalHit,
-        Self::SampleHit,
-        Self::EvalSampleHit,
-    ];
-
-    /// Purpose, in a line.
-    #[must_use]
-    pub const fn purpose(self) -> &'static str {
-        match self {
-            Self::Prepare => "Constants of a shading point: material and hit.",
-            Self::Eval => "Value (without the cosine) and density at wi.",
-            Self::Sample => {
-                "A direction drawn with three uniform numbers in [0, 1); slot -1: discarded."
-            }
-            Self::Lobes => "Value without its colour, colour and density of each lobe at wi.",
-            Self::EvalHit => "Value (without the cosine) and density at wi, of a hit.",
-            Self::SampleHit => {
-                "A direction drawn at a hit with three uniform numbers in [0, 1); slot -1: discarded."
-            }
-            Self::EvalSampleHit => "Value and density at wi, and a direction drawn, of a hit.",
-        }
-    }
-
-    /// Name.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Prepare => "prepare",
-            Self::Eval => "eval",
-            Self::Sample => "sample",
-            Self::Lobes => "lobes",
-            Self::EvalHit => "eval_hit",
-            Self::SampleHit => "sample_hit",
-            Self::EvalSampleHit => "eval_sample_hit",
-        }
-    }
-}
 
 /// A model's functions and records, for one target.
 #[derive(Clone, Debug)]
@@ -95,6 +20,8 @@ pub struct Program {
     material: Record,
     prepared: Record,
     functions: Vec<Function>,
+    /// Functions of parameters, which have no argument.
+    presets: Vec<Function>,
     /// Functions of materials, which have no argument.
     materials: Vec<Function>,
 }
@@ -110,11 +37,20 @@ impl Program {
             name = format!("{name}_{}", word.replace('-', "_"));
         }
         let mut program = Self::trace::<M>(&name, target);
-        for (name, params) in M::Params::PRESETS {
-            program.add_material(
-                &name.replace('-', "_"),
-                &numbers(&M::MODEL.material(params)),
-            );
+        let material = match target {
+            Target::Exact => material::<M, Exact>(&program.material),
+            Target::Fused => material::<M, Fused>(&program.material),
+            Target::Gpu => material::<M, Gpu>(&program.material),
+            Target::GpuNative => material::<M, GpuNative>(&program.material),
+        };
+        program.functions.insert(0, material);
+        let params = params::<M::Params>();
+        for (name, preset) in M::Params::PRESETS {
+            let name = name.replace('-', "_");
+            program.add_material(&name, &numbers(&M::MODEL.material(preset)));
+            let name = format!("params_{name}");
+            let numbers = parameters(&preset.values());
+            program.presets.push(constants(name, &params, &numbers));
         }
         program
     }
@@ -140,15 +76,16 @@ impl Program {
                 Record::of("prepared", &prepared).0,
             )
         });
-        let functions = Call::ALL
-            .map(|call| function::<M, A>(call, &material, &prepared))
-            .into();
+        let calls = Call::ALL.into_iter().filter(|call| *call != Call::Material);
+        let functions = calls.map(|call| function::<M, A>(call, &material, &prepared));
+        let functions = functions.collect();
         Self {
             name: name.to_owned(),
             target,
             material,
             prepared,
             functions,
+            presets: Vec::new(),
             materials: Vec::new(),
         }
     }
@@ -187,7 +124,7 @@ impl Program {
     ///
     /// # Panics
     ///
-    /// If [`keep`](Self::keep) removed it.
+    /// If [`keep`](Self::keep) removed it, or it is [`Call::Material`] of a model that is not in the list.
     #[must_use]
     pub fn function(&self, call: Call) -> &Function {
         let is_called = |function: &&Function| function.name() == call.name();
@@ -198,6 +135,17 @@ impl Program {
     /// Replaces the functions.
     pub fn keep(&mut self, functions: Vec<Function>) {
         self.functions = functions;
+    }
+
+    /// Functions of the presets' parameters by name, which have no argument: none without [`Call::Material`], which reads them.
+    #[must_use]
+    pub fn presets(&self) -> &[Function] {
+        let reads = |function: &Function| function.name() == Call::Material.name();
+        if self.functions.iter().any(reads) {
+            &self.presets
+        } else {
+            &[]
+        }
     }
 
     /// Functions of materials by name, which have no argument: the presets, and those of
@@ -214,13 +162,10 @@ impl Program {
     /// If they are not as many as those of a material.
     pub fn add_material(&mut self, name: &str, numbers: &[f32]) {
         assert_eq!(numbers.len(), self.material.len(), "numbers of a material");
-        let mut graph = Graph::default();
-        let results: Vec<u32> = numbers.iter().map(|x| graph.constant(*x)).collect();
         let name = format!("material_{name}");
         self.materials.retain(|known| known.name() != name);
-        let output = self.material.clone();
-        self.materials
-            .push(Function::new(name, Vec::new(), output, &graph, &results));
+        let material = constants(name, &self.material, numbers);
+        self.materials.push(material);
     }
 
     /// Version of the layout: a hash (FNV-1a, 32 bits) of names and order of the numbers of a material and of a shading point.
@@ -235,6 +180,13 @@ impl Program {
             })
         })
     }
+}
+
+/// A function without arguments that returns a record of these numbers.
+fn constants(name: String, record: &Record, numbers: &[f32]) -> Function {
+    let mut graph = Graph::default();
+    let results: Vec<u32> = numbers.iter().map(|x| graph.constant(*x)).collect();
+    Function::new(name, Vec::new(), record.clone(), &graph, &results)
 }
 
 /// A struct of the next arguments.
@@ -286,6 +238,7 @@ fn sample<A: Arithmetic>(sample: SampleLanes<Lane<A>>) -> Vec<Lane<A>> {
 fn output<M: Model>(call: Call, prepared: &Record) -> Record {
     let lobes = M::LOBES.len();
     match call {
+        Call::Material => unreachable!("it is a function of parameters"),
         Call::Prepare => prepared.clone(),
         Call::Eval | Call::EvalHit => Record::new("eval", &EVAL),
         Call::Sample | Call::SampleHit => Record::new("sample", &SAMPLE),
@@ -438,6 +391,7 @@ pub fn every_operation(target: Target) -> Program {
         material: Record::new("material", &[]),
         prepared: Record::new("prepared", &[]),
         functions: vec![function],
+        presets: Vec::new(),
         materials: Vec::new(),
     }
 }

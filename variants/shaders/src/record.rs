@@ -20,12 +20,15 @@ pub struct Field {
     pub name: String,
     /// Form.
     pub shape: Shape,
+    /// Meaning, where the name does not say it.
+    pub doc: String,
 }
 
 impl Field {
     pub(crate) fn new(name: impl Into<String>, shape: Shape) -> Self {
         let name = name.into();
-        Self { name, shape }
+        let doc = String::new();
+        Self { name, shape, doc }
     }
 
     /// Count of its numbers.
@@ -85,6 +88,7 @@ impl Record {
                 Some(Field {
                     name: last,
                     shape: Shape::Array(len),
+                    ..
                 }) if *last == name => *len += 1,
                 _ if is_array => fields.push(Field::new(name, Shape::Array(1))),
                 _ => fields.push(Field::new(name, Shape::Number)),

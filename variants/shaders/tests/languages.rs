@@ -211,7 +211,9 @@ impl Visitor for Traps {
                 for line in text.lines().filter(is_magic) {
                     let rounds = line.contains("round(") || line.contains("rint(");
                     let is_helper = line.contains("8388735.0; }") || line.contains("8388735.0f; }");
-                    let subtracts = line.contains("8388723.0f -") || line.contains("8388735.0f -");
+                    let subtracts = line.contains("8388723.0f -")
+                        || line.contains("8388735.0f -")
+                        || line.ends_with(" - 8388735.0f;");
                     assert!(
                         rounds || is_helper || subtracts,
                         "sum that compilers take apart: {line}"

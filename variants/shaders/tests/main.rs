@@ -4,6 +4,7 @@ mod bits;
 mod c;
 mod gradients;
 mod languages;
+mod material;
 mod operations;
 mod records;
 mod support;

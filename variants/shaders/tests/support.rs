@@ -1,10 +1,10 @@
 //! Cases, and what the models return for them.
 
 use core::fmt;
-use hairis::model::{Model, SampleLanes};
+use hairis::model::{Model, SampleLanes, Single};
 use hairis::simd::{Level, Vec3x, f32x8};
 use hairis::{Eval, Hit, Material, Material8};
-use hairis_shaders::{Call, Function, numbers};
+use hairis_shaders::{Call, Function, numbers, parameters};
 use hairis_variants::{Kind, ModelId, Parameters, Registered, Values, Visitor};
 
 /// The generator `SplitMix64`.
@@ -125,6 +125,7 @@ impl Random {
 /// Arguments of every call.
 pub(crate) struct Case<M: Model> {
     handle: Material<M>,
+    pub(crate) values: Values,
     pub(crate) material: M::Material<f32>,
     pub(crate) wo: [f32; 3],
     pub(crate) h: f32,
@@ -165,6 +166,7 @@ impl<M: Registered> Case<M> {
             }
             cases.push(Self {
                 handle: Material::new(&M::MODEL, &params),
+                values: params.values(),
                 material: M::MODEL.material(&params),
                 wo: random.direction(),
                 h: random.offset(),
@@ -181,6 +183,7 @@ impl<M: Registered> Case<M> {
         let mut cases = Self::many(count, seed);
         for case in &mut cases {
             let params: M::Params = random.material();
+            case.values = params.values();
             case.material = M::MODEL.material(&params);
             case.wo = random.sphere();
             case.h = random.range(-0.95, 0.95);
@@ -197,6 +200,7 @@ impl<M: Registered> Case<M> {
     /// Arguments of a call.
     pub(crate) fn arguments(&self, call: Call) -> Vec<f32> {
         let mut all = match call {
+            Call::Material => return parameters(&self.values),
             Call::Eval | Call::Sample | Call::Lobes => numbers(&self.prepared()),
             _ => {
                 let mut all = numbers(&self.material);
@@ -220,6 +224,7 @@ impl<M: Registered> Case<M> {
         let at = || eval(&M::eval::<f32, f32>(&prepared, vector(self.wi)));
         let drawn = || sample(&M::sample::<f32, f32>(&prepared, self.xi));
         match call {
+            Call::Material => numbers(&M::constants::<Single<f32>>(&self.values)),
             Call::Prepare => numbers(&prepared),
             Call::Eval | Call::EvalHit => at(),
             Call::Sample | Call::SampleHit => drawn(),

@@ -1,10 +1,12 @@
 //! The model in the registry, and its parameters as fields.
 
 use super::params::{INDEX, ROUGHNESS, SHARE, TILT};
-use super::{Chiang, ChiangDesc, ChiangParams, Shifts};
+use super::{Chiang, ChiangDesc, ChiangMaterial, ChiangParams, Shifts};
 use crate::{Field, Kind, Parameters, Registered, Values};
 use hairis::ParamError;
+use hairis::model::Precision;
 use hairis::params::Rule;
+use hairis::simd::Lanes;
 
 const SHIFTS: [(&str, Shifts); 2] = [("d-eon", Shifts::DEon), ("small-angle", Shifts::SmallAngle)];
 
@@ -115,4 +117,11 @@ impl<const BY_CHANNEL: bool> Registered for Chiang<BY_CHANNEL> {
     const MODEL: Self = Self;
     const NEAR_FIELD: bool = true;
     const COLORS: Option<&'static str> = Some("attenuation");
+
+    #[inline]
+    fn constants<W: Precision>(values: &Values<W::Lane>) -> ChiangMaterial<W::Lane> {
+        let [beta_m, beta_n, tilt, eta] = [0, 1, 2, 3].map(|index| values.number_at(index));
+        let small_angle = W::Lane::splat(0.5).lt(values.number_at(8));
+        ChiangMaterial::new::<W>([beta_m, beta_n, tilt, eta], values.get_at(4), small_angle)
+    }
 }

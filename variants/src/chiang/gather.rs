@@ -1,8 +1,8 @@
 //! Constants of the energy-conserving fibre: per material, and per material and hit.
 
-use super::ChiangParams;
-use hairis::model::Direction;
+use super::params;
 use hairis::model::math::gaussian_and_complement;
+use hairis::model::{Direction, Precision};
 use hairis::simd::{Broadcast, Lanes, Pair, lane_struct, lanes3, store4};
 use hairis::{Hit, PerLobe};
 
@@ -68,37 +68,46 @@ lane_struct! {
     }
 }
 
-impl ChiangMaterial<f32> {
-    /// The material of checked parameters.
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "constants of a material, computed in f64"
-    )]
+impl<L: Lanes<Stored = L>> ChiangMaterial<L> {
+    /// The material of a description, whose ranges are those of checked parameters; the mask is set for
+    /// [`Shifts::SmallAngle`](super::Shifts::SmallAngle).
     #[inline]
     #[must_use]
-    pub(super) fn new(params: &ChiangParams) -> Self {
-        let desc = params.desc();
-        let (v, s) = (desc.variance(), desc.scale());
-        let kept = libm::tanh(core::f64::consts::FRAC_PI_2 / s);
-        let eta_sq = f64::from(desc.eta) * f64::from(desc.eta);
-        let variance = [v, 0.25 * v, 4.0 * v, 4.0 * v];
-        let cut = variance.map(|v| -libm::expm1(-2.0 / v));
-        let turn = [s * kept, s * kept, s * kept, core::f64::consts::TAU];
-        let shift = desc.shifts();
+    pub(super) fn new<W: Precision<Lane = L>>(
+        [beta_m, beta_n, tilt, eta]: [L; 4],
+        sigma_a: [L; 3],
+        small_angle: L::Mask,
+    ) -> Self {
+        let (c, one) = (W::constant, W::constant(1.0));
+        let (v, s) = (
+            params::variance(W::of(beta_m)),
+            params::scale(W::of(beta_n)),
+        );
+        let kept = (c(core::f64::consts::FRAC_PI_2) / s).tanh();
+        let index = W::of(eta);
+        let variance = [v, c(0.25) * v, c(4.0) * v, c(4.0) * v];
+        let cut = variance.map(|v| (c(2.0) / v).one_less_exp());
+        let turn = [s * kept, s * kept, s * kept, c(core::f64::consts::TAU)];
+        let shift = params::shifts(W::of(tilt), index, small_angle).map(W::sin_cos);
         let widths = ChiangWidths {
-            variance: variance.map(|v| v as f32),
-            inv_variance: variance.map(|v| (1.0 / v) as f32),
-            cut: cut.map(|k| k as f32),
-            norm: core::array::from_fn(|p| (1.0 / (variance[p] * cut[p] * turn[p])) as f32),
-            scale: s as f32,
-            four_inv_scale: (4.0 / s) as f32,
-            kept: kept as f32,
+            variance: variance.map(W::rounded),
+            inv_variance: variance.map(|v| (one / v).rounded()),
+            cut: cut.map(W::rounded),
+            norm: core::array::from_fn(|p| (one / (variance[p] * cut[p] * turn[p])).rounded()),
+            scale: s.rounded(),
+            four_inv_scale: (c(4.0) / s).rounded(),
+            kept: kept.rounded(),
         };
         Self {
-            twice_sigma_a: desc.sigma_a.map(|sigma| (2.0 * sigma).min(f32::MAX)),
-            eta: [2.0 * desc.eta, eta_sq as f32, (eta_sq - 1.0) as f32],
-            sin_shift: shift.map(|x| libm::sin(x) as f32),
-            cos_shift: shift.map(|x| libm::cos(x) as f32),
+            twice_sigma_a: sigma_a.map(|sigma| (sigma * 2.0).min(L::splat(f32::MAX))),
+            // The last one keeps its digits next to an index of 1, and is exact in double precision.
+            eta: [
+                eta * 2.0,
+                (index * index).rounded(),
+                ((index - one) * (index + one)).rounded(),
+            ],
+            sin_shift: shift.map(|[sin, _]| sin.rounded()),
+            cos_shift: shift.map(|[_, cos]| cos.rounded()),
             widths,
         }
     }

@@ -2,7 +2,9 @@
 
 use core::f32::consts::{FRAC_PI_4, PI};
 use hairis::ParamError;
+use hairis::model::Precision;
 use hairis::params::{Rule, melanin_absorption, melanin_concentrations};
+use hairis::simd::Lanes;
 
 /// Roughnesses accepted.
 pub(super) const ROUGHNESS: Rule = Rule::Range([1e-3, 1.0]);
@@ -167,15 +169,7 @@ impl ChiangDesc {
     #[inline]
     #[must_use]
     pub fn longitudinal_variance(&self) -> f32 {
-        rounded(self.variance())
-    }
-
-    /// Variance in double precision: narrow lobes magnify rounding in their tails.
-    #[inline]
-    pub(super) fn variance(&self) -> f64 {
-        let m = f64::from(self.beta_m);
-        let root = m * (0.726 + m * (0.812 + 3.7 * libm::pow(m, 18.0)));
-        root * root
+        variance(f64::from(self.beta_m)).rounded()
     }
 
     /// Scale s of the azimuthal logistic, rad: `sqrt(pi / 8) (.265 n + 1.194 n^2 + 5.372 n^22)`, `n` the `beta_n`.
@@ -184,35 +178,50 @@ impl ChiangDesc {
     #[inline]
     #[must_use]
     pub fn azimuthal_scale(&self) -> f32 {
-        rounded(self.scale())
-    }
-
-    /// Scale in double precision.
-    #[inline]
-    pub(super) fn scale(&self) -> f64 {
-        let n = f64::from(self.beta_n);
-        libm::sqrt(core::f64::consts::PI / 8.0)
-            * n
-            * (0.265 + n * (1.194 + 5.372 * libm::pow(n, 20.0)))
+        scale(f64::from(self.beta_n)).rounded()
     }
 
     /// Shifts of `theta_i + theta_o` for R, TT, TRT and the rest, rad.
     #[inline]
     #[must_use]
     pub fn shifts_rad(&self) -> [f32; 4] {
-        self.shifts().map(rounded)
+        let small_angle = self.shifts == Shifts::SmallAngle;
+        shifts(f64::from(self.tilt), f64::from(self.eta), small_angle).map(f64::rounded)
     }
+}
 
-    /// Shifts in double precision.
-    #[inline]
-    pub(super) fn shifts(&self) -> [f64; 4] {
-        let (eta, tilt) = (f64::from(self.eta), f64::from(self.tilt));
-        let factors = match self.shifts {
-            Shifts::DEon => [-2.0, 1.0, 4.0, 0.0],
-            Shifts::SmallAngle => [-2.0, 2.0 * eta - 2.0, 4.0 * eta - 2.0, 0.0],
-        };
-        factors.map(|factor| factor * tilt)
-    }
+/// Longitudinal variance of R for a `beta_m`. In double precision on a host: narrow lobes magnify rounding in their tails.
+#[inline]
+pub(super) fn variance<W: Precision>(m: W) -> W {
+    let c = W::constant;
+    let root = m * (c(0.726) + m * (c(0.812) + c(3.7) * m.power(18)));
+    root * root
+}
+
+/// Scale of the azimuthal logistic for a `beta_n`, rad.
+#[inline]
+pub(super) fn scale<W: Precision>(n: W) -> W {
+    let c = W::constant;
+    c(libm::sqrt(core::f64::consts::PI / 8.0))
+        * n
+        * (c(0.265) + n * (c(1.194) + c(5.372) * n.power(20)))
+}
+
+/// Shifts of the lobes, rad; the mask is set for [`Shifts::SmallAngle`].
+#[inline]
+pub(super) fn shifts<W: Precision>(
+    tilt: W,
+    eta: W,
+    small_angle: <W::Lane as Lanes>::Mask,
+) -> [W; 4] {
+    let c = W::constant;
+    let factors = [
+        c(-2.0),
+        W::select(small_angle, c(2.0) * eta - c(2.0), c(1.0)),
+        W::select(small_angle, c(4.0) * eta - c(2.0), c(4.0)),
+        c(0.0),
+    ];
+    factors.map(|factor| factor * tilt)
 }
 
 impl Default for ChiangDesc {
@@ -220,15 +229,6 @@ impl Default for ChiangDesc {
     fn default() -> Self {
         Self::DEFAULT
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "rounding is what the call is for; no value here overflows"
-)]
-#[inline]
-fn rounded(value: f64) -> f32 {
-    value as f32
 }
 
 /// Denominator of the absorption of a colour: Chiang et al. 2016, section 4.

@@ -1,10 +1,12 @@
 //! The model in the registry, and its parameters as fields.
 
 use super::params::EXPONENT;
-use super::{Form, KajiyaKay, KajiyaKayDesc, KajiyaKayParams};
+use super::{Form, KajiyaKay, KajiyaKayDesc, KajiyaKayMaterial, KajiyaKayParams};
 use crate::{Field, Kind, Parameters, Registered, Values};
 use hairis::ParamError;
+use hairis::model::Precision;
 use hairis::params::Rule;
+use hairis::simd::Lanes;
 
 const FORMS: [(&str, Form); 2] = [
     ("reciprocal", Form::Reciprocal),
@@ -76,4 +78,15 @@ impl Parameters for KajiyaKayParams {
 impl Registered for KajiyaKay {
     const NAME: &'static str = "kajiya-kay";
     const MODEL: Self = Self;
+
+    #[inline]
+    fn constants<W: Precision>(values: &Values<W::Lane>) -> KajiyaKayMaterial<W::Lane> {
+        let reciprocal = values.number_at(3).lt(W::Lane::splat(0.5));
+        super::constants::<W>(
+            values.get_at(0),
+            values.get_at(1),
+            values.number_at(2),
+            reciprocal,
+        )
+    }
 }

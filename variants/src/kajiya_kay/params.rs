@@ -2,6 +2,7 @@
 
 use core::f32::consts::{LN_2, PI};
 use hairis::ParamError;
+use hairis::model::Precision;
 use hairis::params::Rule;
 
 /// Exponents accepted.
@@ -108,7 +109,7 @@ impl KajiyaKayDesc {
     }
 }
 
-/// Integral of `cos^n` over `[-pi/2, pi/2]`, for `n` above -1: `sqrt(pi) gamma(n/2 + 1/2) / gamma(n/2 + 1)`.
+/// Integral of `cos^n` over `[-pi/2, pi/2]`, for `n` above -1 (in single precision, from 1): `sqrt(pi) gamma(n/2 + 1/2) / gamma(n/2 + 1)`.
 ///
 /// ```
 /// use hairis_variants::kajiya_kay::cosine_integral;
@@ -116,9 +117,9 @@ impl KajiyaKayDesc {
 /// ```
 #[inline]
 #[must_use]
-pub fn cosine_integral(n: f64) -> f64 {
-    let log = libm::lgamma(0.5 * n + 0.5) - libm::lgamma(0.5 * n + 1.0);
-    libm::sqrt(core::f64::consts::PI) * libm::exp(log)
+pub fn cosine_integral<W: Precision>(n: W) -> W {
+    let half = W::constant(0.5) * n;
+    W::constant(libm::sqrt(core::f64::consts::PI)) * half.half_gamma_ratio()
 }
 
 impl Default for KajiyaKayDesc {

@@ -50,7 +50,9 @@ impl<T: Copy + Default> Values<T> {
             given: 0,
         }
     }
+}
 
+impl<T: Copy> Values<T> {
     /// Converts the numbers of every field.
     #[inline]
     #[must_use]

@@ -19,6 +19,14 @@ pub trait MatchedBell: Bell {
     /// The integral up to `x` in the interval: it ascends with `x`.
     fn integral<L: Lanes>(origin: L, x: L) -> L;
 
+    /// [`Bell::area`] in closed form.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn closed_area<L: Lanes>(lo: L, hi: L) -> L {
+        let origin = Self::origin(lo, hi);
+        (Self::integral(origin, hi) - Self::integral(origin, lo)) * Self::UNIT
+    }
+
     /// The point whose integral is `sum`. Rounding may take it past an end.
     fn invert<L: Lanes>(origin: L, sum: L) -> L;
 }

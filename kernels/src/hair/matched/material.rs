@@ -1,8 +1,10 @@
 //! Constants of a matched sampler per material.
 
 use super::MatchedBell;
-use crate::HairParams;
 use crate::hair::HairLobes;
+use crate::hair::view::intensities;
+use crate::model::Precision;
+use crate::params::HairDesc;
 use crate::simd::{Broadcast, Lanes};
 use core::f32::consts::PI;
 
@@ -50,30 +52,31 @@ pub(super) fn extent<B: MatchedBell, L: Lanes, C: Broadcast<L>>(
     [r * 4.0, tt * azimuth_tt, trt * 4.0, trt * azimuth_g]
 }
 
-impl MatchedMaterial<f32> {
-    /// The material of checked parameters.
+impl<L: Lanes<Stored = L> + Broadcast<L>> MatchedMaterial<L> {
+    /// The material of a description, whose ranges are those of checked parameters.
     #[inline]
     #[must_use]
-    pub(super) fn of<B: MatchedBell>(bell: B, params: &HairParams) -> Self {
-        let lobes = HairLobes::of(bell, params);
-        let phi_g = params.desc().phi_g;
-        let [inv_gamma_tt, inv_gamma_g] = lobes.inv_half_gamma.map(|inv| 0.5 * inv);
+    pub(super) fn of<B: MatchedBell, W: Precision<Lane = L>>(bell: B, d: &HairDesc<L>) -> Self {
+        let (zero, pi) = (L::splat(0.0), L::splat(PI));
+        let lobes = HairLobes::of::<B, W>(bell, d);
+        let phi_g = d.phi_g;
+        let [inv_gamma_tt, inv_gamma_g] = lobes.inv_half_gamma.map(|inv| inv * 0.5);
         let ranges = [
-            (0.0, PI * inv_gamma_tt),
-            (-phi_g * inv_gamma_g, (PI - phi_g) * inv_gamma_g),
+            (zero, pi * inv_gamma_tt),
+            (-phi_g * inv_gamma_g, (pi - phi_g) * inv_gamma_g),
         ];
         let azimuth_origin = ranges.map(|(lo, hi)| B::origin(lo, hi));
         let from_to =
             |i: usize| [ranges[i].0, ranges[i].1].map(|x| B::integral(azimuth_origin[i], x));
         let [tt, glint] = [from_to(0), from_to(1)];
         // Integrals ascend but for their rounding.
-        let azimuth_mass = [tt, glint].map(|[from, to]| 0.0_f32.max(to - from));
-        let intensity = intensity(params);
+        let azimuth_mass = [tt, glint].map(|[from, to]| zero.max(to - from));
+        let intensity = intensity::<W>(d);
         Self {
             lobes,
             importance: intensity.map(|rgb| (rgb[0] + rgb[1] + rgb[2]) * (1.0 / 3.0)),
             intensity: core::array::from_fn(|i| intensity[i / 3][i % 3]),
-            extent: extent::<B, f32, f32>(&lobes, azimuth_mass),
+            extent: extent::<B, L, L>(&lobes, azimuth_mass),
             azimuth_mass,
             azimuth_from: [tt[0], glint[0]],
             azimuth_origin,
@@ -83,30 +86,19 @@ impl MatchedMaterial<f32> {
 
 /// Intensity of each lobe in each channel, to the scale of the largest mean.
 ///
-/// In double precision: the product of two of the largest legal intensities overflows a float.
+/// The product of two of the largest legal intensities overflows a float.
 #[inline]
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "at most 3 times the largest"
-)]
-fn intensity(params: &HairParams) -> [[f32; 3]; 4] {
-    let d = params.desc();
-    let double = |rgb: [f32; 3], factor: f32| rgb.map(|c| f64::from(c) * f64::from(factor));
-    let all = [
-        double(d.i_r, 1.0),
-        double(d.i_tt, 1.0),
-        double(d.i_trt, 1.0),
-        double(d.i_trt, d.i_g),
-    ];
-    let mean = |rgb: &[f64; 3]| (rgb[0] + rgb[1] + rgb[2]) / 3.0;
-    let largest = all.iter().map(mean).fold(0.0, f64::max);
-    all.map(|rgb| {
-        let (own, least) = (mean(&rgb), largest * LEAST_IMPORTANCE);
-        let by = if own < least {
-            LEAST_IMPORTANCE / own
-        } else {
-            1.0 / largest
-        };
-        rgb.map(|c| if own > 0.0 { (c * by) as f32 } else { 0.0 })
+fn intensity<W: Precision>(d: &HairDesc<W::Lane>) -> [[W::Lane; 3]; 4] {
+    let (c, zero) = (W::constant, W::constant(0.0));
+    let ([r, tt, trt], factors) = intensities::<W>(d);
+    let colors = [r, tt, trt, trt];
+    let all: [[W; 3]; 4] = core::array::from_fn(|lobe| colors[lobe].map(|x| x * factors[lobe]));
+    let mean = all.map(|[r, g, b]| (r + g + b) / c(3.0));
+    let largest = mean[0].max(mean[1]).max(mean[2]).max(mean[3]);
+    let least = largest * c(LEAST_IMPORTANCE);
+    core::array::from_fn(|lobe| {
+        let own = mean[lobe];
+        let by = W::select(own.lt(least), c(LEAST_IMPORTANCE) / own, c(1.0) / largest);
+        all[lobe].map(|x| W::select(zero.lt(own), x * by, zero).rounded())
     })
 }

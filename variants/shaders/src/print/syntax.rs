@@ -1,7 +1,8 @@
 //! Text before the functions of a program: comments, and the operations that a language lacks.
 
 use super::{Language, prefix};
-use crate::program::{Program, Target};
+use crate::call::Target;
+use crate::program::Program;
 
 /// Names of types and functions that differ between the languages that look like C.
 const C: &str = "\

@@ -1,0 +1,148 @@
+//! Constants of materials in single precision, as generated source computes them, against those of the library.
+
+use crate::support::{Case, Random, every_model};
+use hairis::Hit;
+use hairis::model::Single;
+use hairis::simd::Vec3x;
+use hairis_shaders::{Program, Target, numbers};
+use hairis_variants::{Kind, ModelId, Parameters, Registered, Values, Visitor};
+
+/// Parameters from all over their ranges, the ends included.
+fn legal<P: Parameters>(random: &mut Random) -> P {
+    loop {
+        let mut values: Values = P::default().values();
+        for (place, field) in P::FIELDS.iter().enumerate() {
+            if !values.has_at(place) {
+                continue;
+            }
+            if let Kind::Word(words) = field.kind {
+                let word = random.choose(words);
+                values = values.with_word(field.name, word);
+            } else if let Some([least, most]) = field.range() {
+                let number = || match random.unit() {
+                    x if x < 0.05 => least,
+                    x if x < 0.1 => most,
+                    _ if most == f32::MAX => random.range(-100.0, 100.0).exp2(),
+                    _ if least > 0.0 => {
+                        random.range(least.ln(), most.ln()).exp().clamp(least, most)
+                    }
+                    _ => random.range(least, most),
+                };
+                let numbers: Vec<f32> = core::iter::repeat_with(number)
+                    .take(field.kind.width())
+                    .collect();
+                values = values.with(field.name, &numbers);
+            }
+        }
+        if let Ok(params) = P::from_values(&values) {
+            return params;
+        }
+    }
+}
+
+/// Distance of two numbers of a field in units of the last place of the second. Sines, cosines and probabilities count in units
+/// of the last place of 1: no result depends on more.
+fn units(field: &str, got: f32, expected: f32) -> f64 {
+    let is_share = [
+        "sin_shift",
+        "cos_shift",
+        "selection",
+        "bounds",
+        "intensity",
+        "importance",
+    ]
+    .iter()
+    .any(|name| field.contains(name));
+    let size = if is_share { 1.0 } else { expected.abs() };
+    let ulp = f64::from(size.max(f32::MIN_POSITIVE)) * f64::from(f32::EPSILON);
+    if got == expected {
+        0.0
+    } else {
+        (f64::from(got) - f64::from(expected)).abs() / ulp
+    }
+}
+
+/// Largest distance of each field over materials, in units in the last place.
+fn distances<M: Registered>(draw: impl Fn(&mut Random) -> M::Params) -> Vec<(String, f64)> {
+    let program = Program::of::<M>(Target::Exact);
+    let places: Vec<String> = program.material().places().collect();
+    let mut worst = vec![0.0_f64; places.len()];
+    let mut random = Random(60);
+    for _ in 0..10_000 {
+        let params = draw(&mut random);
+        let single = numbers(&M::constants::<Single<f32>>(&params.values()));
+        let double = numbers(&M::MODEL.material(&params));
+        for (place, (got, expected)) in single.into_iter().zip(double).enumerate() {
+            let distance = units(&places[place], got, expected);
+            assert!(
+                !distance.is_nan(),
+                "{} of {params:?}: {got}, {expected}",
+                places[place]
+            );
+            worst[place] = worst[place].max(distance);
+        }
+    }
+    places.into_iter().zip(worst).collect()
+}
+
+/// Relative errors of value and density by the constants' distance: median, 99.9% and largest, of those above 1e-8.
+fn effect<M: Registered>() -> [f64; 3] {
+    let mut errors = Vec::new();
+    for case in Case::<M>::smooth(20_000, 61) {
+        let [wo, wi] = [case.wo, case.wi].map(|[x, y, z]| Vec3x::new(x, y, z));
+        let at = |material: &M::Material<f32>| {
+            let prepared = M::prepare::<f32, f32>(material, Hit::new(wo, case.h));
+            let eval = M::eval::<f32, f32>(&prepared, wi);
+            [eval.value[0], eval.value[1], eval.value[2], eval.pdf].map(f64::from)
+        };
+        let pairs = at(&M::constants::<Single<f32>>(&case.values))
+            .into_iter()
+            .zip(at(&case.material));
+        errors.extend(
+            pairs
+                .filter(|(_, exact)| *exact > 1e-8)
+                .map(|(got, exact)| (got / exact - 1.0).abs()),
+        );
+    }
+    errors.sort_by(f64::total_cmp);
+    let at = |less: usize| errors[errors.len() - 1 - less];
+    [at(errors.len() / 2), at(errors.len() / 1000), at(0)]
+}
+
+/// Units in the last place that a constant may be away, in everyday and in any legal materials.
+const MOST: f64 = 8.0;
+
+#[derive(Clone, Copy)]
+struct Close;
+
+impl Visitor for Close {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        let id = ModelId::of::<M>();
+        let name = format!("{} {:?}", id.name(), id.choice());
+        let [everyday, legal] = [
+            distances::<M>(|random| random.material()),
+            distances::<M>(legal),
+        ];
+        for ((place, everyday), (_, legal)) in everyday.into_iter().zip(legal) {
+            if everyday > 0.0 || legal > 0.0 {
+                println!("{name} {place}: {everyday:.1}, {legal:.1}");
+            }
+            assert!(
+                everyday <= MOST && legal <= MOST,
+                "{name} {place}: {everyday}, {legal}"
+            );
+        }
+        let effect = effect::<M>();
+        println!("{name}: value and density {effect:?}");
+        // Narrow lobes of Chiang's magnify the last digits of their variance in their tails.
+        let most = if id.name() == "chiang" { 2e-5 } else { 1e-6 };
+        assert!(effect[2] < most, "{name}: {effect:?}");
+    }
+}
+
+#[test]
+fn single_precision_has_the_constants_of_the_library() {
+    every_model(Close);
+}
