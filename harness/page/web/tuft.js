@@ -1,0 +1,3 @@
+function buildTuft() {}
+function restartTuft() {}
+function stepTuft() {}
