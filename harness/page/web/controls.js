@@ -8,6 +8,7 @@ function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
+    else if (name.startsWith('aria-')) element.setAttribute(name, value);
     else if (value === true) element.setAttribute(name, '');
     else if (value !== false && value !== undefined && value !== null) element.setAttribute(name, value);
   }
@@ -185,6 +186,7 @@ const fill = (parent, ...children) => parent.replaceChildren(...children.filter(
 
 /// Every control anew.
 function build() {
+  buildTuftControls();
   const legend = (text, small) => make('legend', {}, text, small ? make('small', {}, ` ${small}`) : null);
   const models = [0, 1].map(slot => kernel.model(state.materials[slot].model)), near = models.some(model => model.near_field);
   const set = (of, name) => value => { state[of][name] = value; return changed(); };

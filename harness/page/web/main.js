@@ -28,23 +28,21 @@ function changed() {
     }
   }
   refuse('');
-  if (!isScheduled) {
-    isScheduled = true;
-    requestAnimationFrame(() => { isScheduled = false; draw(); });
-  }
+  schedule();
   return '';
+}
+
+function schedule() {
+  if (isScheduled) return;
+  isScheduled = true;
+  requestAnimationFrame(() => { isScheduled = false; draw(); });
 }
 
 function setView(slot) { kernel.setView(slot, state.view, state.lobes); }
 
 function draw() {
   const start = performance.now();
-  for (const slot of [0, 1]) {
-    setView(slot);
-    const before = performance.now();
-    kernel.calls.eval(slot, kernel.entry(state.materials[slot]).model, true, MAP.count);
-    figures.maps[slot] = { ...measureMap(kernel.maps[slot], maps[slot]), eval: performance.now() - before };
-  }
+  for (const slot of [0, 1]) drawMap(slot);
   figures.difference = measureDifference(maps[0], maps[1], differences);
   drawMaps();
   figures.times.push(performance.now() - start);
@@ -64,7 +62,7 @@ function settle(isQuick = false) {
   for (const slot of [0, 1]) {
     setView(slot);
     const { entries } = kernel.model(state.materials[slot].model);
-    figures.variance[slot] = { entries, lights: measureVariance(slot, entries, isQuick) };
+    figures.variance[slot] = { entries, lights: measureVariance(slot, entries, isQuick), isSettled: !isQuick };
   }
   drawVariance();
   drawAlbedo();
@@ -73,6 +71,22 @@ function settle(isQuick = false) {
   texts();
 }
 
+/// Evaluates and measures the map of a slot.
+function drawMap(slot) {
+  setView(slot);
+  kernel.calls.eval(slot, kernel.entry(state.materials[slot]).model, true, MAP.count);
+  figures.maps[slot] = measureMap(kernel.maps[slot], maps[slot]);
+}
+
+/// Colours of the maps by the upper half of a number's bits.
+function colorTable(most) {
+  const isLog = state.scale === 'log', last = STEPS - 1, by = last / (isLog ? DECADES * Math.LN10 : most), shift = isLog ? last - Math.log(most) * by : 0;
+  return table(value => {
+    const at = isLog ? shift + Math.log(value) * by : value * by;
+    return VIRIDIS_STEPS[at > 0 ? at < last ? at | 0 : last : 0];
+  }, colorTable.entries, 32768);
+}
+colorTable.entries = new Uint32Array(65536);
 const peakOf = () => Math.max(figures.maps[0].peak, figures.maps[1].peak, 1e-12);
 
 function drawMaps() {
@@ -84,7 +98,7 @@ function drawMaps() {
     const densities = [0, 1].map(slot => kernel.maps[slot][6].subarray(0, MAP.count));
     const shown = show === 'pdf' ? densities : maps;
     const most = show === 'pdf' ? Math.max(...densities.map(map => map.reduce((a, b) => Math.max(a, b), 1e-12))) : peak;
-    const colorsOf = table(value => onScale(VIRIDIS, position(value, most, scale)));
+    const colorsOf = colorTable(most);
     shown.forEach((map, slot) => canvases[slot].paint(map, colorsOf));
     const ticks = scale === 'log'
       ? Array.from({ length: DECADES + 2 }, (_, i) => 10 ** (Math.floor(Math.log10(most)) - i)).map(value => ({ at: position(value, most, 'log'), text: tidy(value) })).filter(({ at }) => at >= 0).reverse()
@@ -94,7 +108,7 @@ function drawMaps() {
   }
   $('scale').style.visibility = show === 'color' ? 'hidden' : '';
   const most = Math.max(figures.difference.peak, 1e-12);
-  canvases[2].paint(differences, table(value => onScale(DIVERGING, (signedPosition(value, most) + 1) / 2)));
+  canvases[2].paint(differences, table(value => DIVERGING_STEPS[Math.max(0, Math.min(STEPS - 1, Math.round((signedPosition(value, most) + 1) / 2 * (STEPS - 1))))]));
   drawScale($('signed-scale'), t => onScale(DIVERGING, t), [-1, -0.1, 0, 0.1, 1].map(x => ({ at: (signedPosition(x, 1) + 1) / 2, text: minus(tidy(x * most)) })));
   canvases.forEach(canvas => canvas.mark(state.cut, state.view.theta));
 }
@@ -102,12 +116,11 @@ function drawMaps() {
 /// Tables from radiance to bytes of sRGB, one per row for its cosine, in 32 steps.
 function toneOf(peak) {
   const by = 8 / peak, steps = Array.from({ length: 33 }, (_, i) => {
-    const entries = new Uint8Array(65536), wide = table(value => {
-      const x = Math.max(0, value) * (i / 32) * by;
-      return Math.round(255 * toSrgb(x / (1 + x)));
-    });
-    entries.set(wide);
-    return entries;
+    const bytes = Uint8Array.from({ length: STEPS }, (_, at) => Math.round(255 * toSrgb(at / (STEPS - 1))));
+    return table(value => {
+      const x = value * (i / 32) * by;
+      return bytes[Math.min(STEPS - 1, x / (1 + x) * (STEPS - 1) | 0)];
+    }, new Uint8Array(65536), 32640);
   });
   return { rows: Array.from(MAP.cos, cos => steps[Math.round(32 * cos)]) };
 }
@@ -127,6 +140,10 @@ function drawPlots() {
       })));
     setView(slot);
   }
+  ['along', 'around'].forEach((id, which) => {
+    const peaks = lines[which].filter(({ weight }) => weight === 2).map(({ x, y }) => { const top = y.indexOf(Math.max(...y)); return `${tidy(y[top])} per steradian at ${x[top]} degrees`; });
+    $(id).setAttribute('aria-label', `S cos theta ${id} the fibre: ${titleOf(0)} peaks with ${peaks[0]}, ${titleOf(1)} with ${peaks[1]}`);
+  });
   const log = state.scale === 'log', order = lines => [...lines].sort((a, b) => a.weight - b.weight);
   plot($('along'), { lines: order(lines[0]), range: [-90, 90], ticks: 30, label: 'θᵢ', unit: 'S cos θ, per sr', log, marker: state.cut.theta });
   plot($('around'), { lines: order(lines[1]), range: [-180, 180], ticks: $('around').clientWidth < 420 ? 90 : 45, label: 'φᵢ', unit: 'S cos θ, per sr', log, marker: state.cut.phi });
@@ -138,6 +155,7 @@ function drawAlbedo() {
     for (const conserving of [true, false])
       lines.push({ x: inclinations, y: albedoCurve(slot, state.lobes, conserving, inclinations), color: colors.slots[slot], dash: conserving ? [5, 3] : [], weight: conserving ? 1.5 : 2 });
   figures.albedo = lines;
+  $('albedo').setAttribute('aria-label', `Albedo of ${titleOf(0)} from ${tidy(Math.min(...lines[1].y))} to ${tidy(Math.max(...lines[1].y))}, of ${titleOf(1)} from ${tidy(Math.min(...lines[3].y))} to ${tidy(Math.max(...lines[3].y))}`);
   plot($('albedo'), { lines, range: [-90, 90], ticks: 30, label: 'θₒ', unit: 'albedo, mean of RGB', marker: state.view.theta, top: Math.max(1.05, ...lines.flatMap(({ y }) => y)), guides: [1] });
 }
 
@@ -337,8 +355,24 @@ function listen() {
     $(event.shiftKey ? 'redo' : 'undo').click();
   });
   addEventListener('hashchange', () => { const found = readLink(location.hash); restore(found.state); notice(found.refusal); commit(); });
-  new ResizeObserver(() => changed()).observe($('results'));
-  for (const query of ['(prefers-color-scheme: dark)', '(prefers-contrast: more)']) matchMedia(query).addEventListener('change', () => { readColors(); changed(); });
+  let width = innerWidth;
+  addEventListener('resize', () => { if (innerWidth !== width) { width = innerWidth; schedule(); } });
+  for (const query of ['(prefers-color-scheme: dark)', '(prefers-contrast: more)']) matchMedia(query).addEventListener('change', () => { readColors(); schedule(); });
+}
+
+/// For the console: shows a material as A, from a view, with a cut.
+function show(material, view, cut) {
+  Object.assign(state, { linked: false, view, cut });
+  state.materials[0] = structuredClone(material);
+  restore();
+}
+
+/// For the console: time of one map in milliseconds, evaluated, measured and painted.
+function timeMap(slot) {
+  const start = performance.now();
+  drawMap(slot);
+  canvases[slot].paint(maps[slot], colorTable(peakOf()));
+  return performance.now() - start;
 }
 
 function frames() {
@@ -369,7 +403,7 @@ async function start() {
   past = [JSON.stringify(state)];
   listen();
   requestAnimationFrame(animate);
-  globalThis.hairis = { kernel, figures, get state() { return state; } };
+  globalThis.hairis = { kernel, figures, request, show, timeMap, tuft, get state() { return state; } };
   $('about').textContent = 'θ is the inclination to the normal plane of the fibre, φ the azimuth around it; the viewer is at φ 0°. Angles, lights and figures are those of `hairis eval` and `hairis compare`. Nothing is loaded from elsewhere, and nothing leaves this page.';
 }
 

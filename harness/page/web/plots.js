@@ -22,13 +22,16 @@ function onScale(scale, t) {
 /// Blue below, white, vermillion above: told apart by people who see colours differently.
 const DIVERGING = [0x053a66, 0x0072b2, 0x7fb9dc, 0xf7f7f7, 0xf0a883, 0xd55e00, 0x6b2a00];
 
-/// The upper half of a float's bits indexes a table, so that a map needs no logarithm per cell.
-function table(of) {
-  const entries = new Uint32Array(65536), bits = new Uint32Array(1), float = new Float32Array(bits.buffer);
-  for (let i = 0; i < 65536; i++) {
-    bits[0] = i << 16 | 0x8000;
-    entries[i] = of(float[0]);
-  }
+const STEPS = 1024;
+const steps = scale => Uint32Array.from({ length: STEPS }, (_, i) => onScale(scale, i / (STEPS - 1)));
+const VIRIDIS_STEPS = steps(VIRIDIS), DIVERGING_STEPS = steps(DIVERGING);
+
+/// Numbers of which the upper half of the bits counts up: with them a map needs no logarithm per cell.
+const UPPER = new Float32Array(Uint32Array.from({ length: 65536 }, (_, i) => i << 16 | 0x8000).buffer);
+
+/// Entries by the upper half of a number's bits; the first half are numbers above 0.
+function table(of, entries = new Uint32Array(65536), count = 65536) {
+  for (let i = 0; i < count; i++) entries[i] = of(UPPER[i]);
   return entries;
 }
 

@@ -7,7 +7,7 @@ function initialState() {
   const [a, b] = [kernel.models[0], kernel.models[1]].map(model => newMaterial(model));
   return {
     materials: [a, b], linked: true, tab: 0, lobes: 15, show: 'value', scale: 'log', samples: false,
-    view: { theta: 45, h: 0.3 }, cut: { theta: -45, phi: 0 }, turn: [-0.6, 0.35], light: { turn: 0, name: 'sky' },
+    view: { theta: 45, h: 0.3 }, cut: { theta: -45, phi: 0 }, turn: [-0.6, 0.35], light: { turn: 0, exposure: 0 }, camera: [0.5, 0.15],
   };
 }
 
