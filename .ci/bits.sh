@@ -16,26 +16,12 @@ target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 tools=${TOOLS:-$target/tools}
 out=$target/bits
 mkdir -p "$out" "$tools"
+. .ci/unpack
 rm -f "$out"/*.txt
 cd .ci/nostd
 # Bits do not depend on the optimisation level, either; this one compiles fastest.
 build=(cargo build -q --release --locked --features bits --config 'profile.release.opt-level=1')
 
-unpack() { # unpack NAME PACKAGE...: Debian packages and what they need, without installing them
-  local dir=$tools/$1 list; shift
-  [ ! -e "$dir.done" ] || return 0
-  mkdir -p "$dir" "$dir.packages"
-  apt-get update -qq
-  list=$(apt-get install -s --no-install-recommends "$@" | sed -nE 's/^Inst ([^ ]+) (\[[^]]*\] )?\(([^ ]+) .*/\1=\3/p')
-  (cd "$dir.packages" && apt-get download -o APT::Sandbox::User=root -qq $list && for file in *.deb; do dpkg -x "$file" "$dir"; done)
-  touch "$dir.done"
-}
-wrapped() { # wrapped DIR PROGRAM [ARGUMENT...]: a script that starts it with its own libraries
-  local dir=$tools/$1 name; name=$tools/$(basename "$2")
-  printf '#!/bin/sh\nLD_LIBRARY_PATH=%s exec %s "$@"\n' \
-    "$dir/usr/lib/x86_64-linux-gnu:$dir/lib/x86_64-linux-gnu:$dir/usr/lib/x86_64-linux-gnu/pulseaudio" "$dir/$2 ${*:3}" > "$name"
-  chmod +x "$name"
-}
 cross() { # cross NAME TARGET RUSTFLAGS: builds core and the program; prints the program's path
   unpack rust rustc-web rust-web-src
   wrapped rust usr/bin/rustc

@@ -1,0 +1,153 @@
+//! The calls of each model of the list.
+
+use crate::memory::COLUMN;
+use crate::slot::Slot;
+use glam::Vec3;
+use hairis::simd::{LaneStruct, Path, f32x8};
+use hairis::{Gaussian, Hit, Matched, Vec3x8};
+use hairis_variants::{ModelId, Registered, Visitor};
+
+/// Columns that a call reads and writes.
+type Columns = [[f32; COLUMN]];
+
+/// The calls of a model.
+pub(crate) struct Calls {
+    pub(crate) eval: fn(&Slot, &mut Columns, usize),
+    pub(crate) sample: fn(&Slot, &mut Columns, usize),
+    pub(crate) hits: fn(&Slot, &mut Columns, usize),
+    pub(crate) albedos: fn(&Slot, &mut Columns, usize, bool),
+    pub(crate) constants: fn(&Slot, &mut [f32]) -> usize,
+}
+
+impl Calls {
+    pub(crate) fn of(id: ModelId) -> Self {
+        struct All;
+        impl Visitor for All {
+            type Output = Calls;
+            fn visit<M: Registered>(self) -> Calls {
+                if const { !has(ModelId::of::<M>()) } {
+                    return Self.visit::<Matched<Gaussian>>();
+                }
+                Calls {
+                    eval: eval::<M>,
+                    sample: sample::<M>,
+                    hits: hits::<M>,
+                    albedos: albedos::<M>,
+                    constants: constants::<M>,
+                }
+            }
+        }
+        id.visit(All)
+    }
+}
+
+/// Whether the module has the model: bands of another number than the default would add a third to it.
+pub(crate) const fn has(id: ModelId) -> bool {
+    !matches!(
+        id,
+        ModelId::GaussianMatched5
+            | ModelId::GaussianMatched25
+            | ModelId::CauchyMatched5
+            | ModelId::CauchyMatched25
+            | ModelId::ChiangByChannel
+    )
+}
+
+/// The model of an index; of one that there is not, the first.
+pub(crate) fn model_at(index: usize) -> ModelId {
+    *ModelId::ALL.get(index).unwrap_or(&ModelId::ALL[0])
+}
+
+/// Whether the model stands for all of its name where nothing is sampled; the code of the others is left out.
+const fn is_first<M: Registered>() -> bool {
+    ModelId::of::<M>().is_default()
+}
+
+/// Eight numbers of a column.
+fn packet(column: &[f32; COLUMN], first: usize) -> f32x8 {
+    let lanes = column[first..].first_chunk::<8>();
+    f32x8::new(*lanes.unwrap_or(&[0.0; 8]))
+}
+
+// Packets, not columns: those would be compiled for each set of results that callers may leave out.
+fn eval<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize) {
+    let bsdf = slot.bsdf::<M>();
+    for first in (0..count).step_by(8) {
+        let [x, y, z] = [0, 1, 2].map(|axis| packet(&columns[axis], first));
+        let eval = bsdf.eval_pdf8(&Vec3x8::new(x, y, z));
+        let [r, g, b] = eval.value;
+        for (column, lanes) in columns[3..].iter_mut().zip([r, g, b, eval.pdf]) {
+            if let Some(to) = column[first..].first_chunk_mut::<8>() {
+                *to = lanes.to_array();
+            }
+        }
+    }
+}
+
+// One sample and one hit at a time: the code of packets is twice as long, and neither waits for these.
+fn sample<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize) {
+    let bsdf = slot.bsdf::<M>();
+    for place in 0..count {
+        let sample = bsdf.sample([0, 1, 2].map(|axis| columns[axis][place]));
+        let results = sample.map_or([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0], |sample| {
+            let ([u, v, w], [r, g, b]) = (sample.wi.to_array(), sample.weight);
+            let lobe = sample.lobe.index();
+            [u, v, w, r, g, b, sample.pdf, lobe as f32]
+        });
+        for (column, number) in columns[3..].iter_mut().zip(results) {
+            column[place] = number;
+        }
+    }
+}
+
+fn hits<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize) {
+    if const { !is_first::<M>() } {
+        return;
+    }
+    let material = slot.material::<M>();
+    for place in 0..count {
+        let [u, v, w, h, x, y, z] = core::array::from_fn(|column| columns[column][place]);
+        let hit = Hit::new(Vec3::new(u, v, w), h);
+        let value = material.prepare(hit).eval(Vec3::new(x, y, z));
+        for (column, number) in columns[7..].iter_mut().zip(value) {
+            column[place] = number;
+        }
+    }
+}
+
+fn albedos<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize, conserving: bool) {
+    if const { !is_first::<M>() } {
+        return;
+    }
+    let material = slot.material::<M>();
+    for place in 0..count {
+        let sin = columns[0][place].clamp(-1.0, 1.0);
+        let cos = libm::sqrtf((1.0 - sin) * (1.0 + sin));
+        let bsdf = material.prepare(Hit::new(Vec3::new(sin, cos, 0.0), slot.hit.h));
+        let bsdf = if conserving && !M::CONSERVES {
+            bsdf.conserving()
+        } else {
+            bsdf
+        };
+        let albedo = slot.restricted(&bsdf).albedo();
+        for (column, number) in columns[1..].iter_mut().zip(albedo.0.as_flattened()) {
+            column[place] = *number;
+        }
+    }
+}
+
+fn constants<M: Registered>(slot: &Slot, column: &mut [f32]) -> usize {
+    if const { !is_first::<M>() } {
+        return 0;
+    }
+    let mut count = 0;
+    let mut see = |_: &Path<'_>, number| {
+        if let Some(place) = column.get_mut(count) {
+            *place = number;
+            count += 1;
+        }
+    };
+    let constants = M::MODEL.material(&slot.params::<M>());
+    constants.visit(&Path::Root, &mut see);
+    count
+}
