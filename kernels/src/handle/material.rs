@@ -123,12 +123,17 @@ impl<M: Model> Material<M> {
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
+        if M::integrates::<f32, f32>(&self.constants) > 0.0 {
+            return self.prepare8_at(hits).conserving();
+        }
+        self.prepare8_at(hits)
+    }
+
+    /// Not inlined: the code of the portable level, up to 80 kB, would be in both branches of [`prepare8`](Self::prepare8).
+    #[inline(never)]
+    fn prepare8_at(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
         let (material, level) = (&self.constants, self.level);
         let kernel = Prepare::<M, f32, _> { material, hits };
-        if M::integrates::<f32, f32>(material) > 0.0 {
-            let prepared = level.run(kernel);
-            return Bsdf8 { prepared, level }.conserving();
-        }
         level.run_into(kernel, |prepared| Bsdf8 { prepared, level })
     }
 
@@ -231,12 +236,17 @@ impl<M: Model> Material8<M> {
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
+        if let Some(lanes) = self.integrating() {
+            return self.prepare8_at(hits).conserving_where(lanes);
+        }
+        self.prepare8_at(hits)
+    }
+
+    /// As for one material.
+    #[inline(never)]
+    fn prepare8_at(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
         let (material, level) = (&self.constants, self.level);
         let kernel = Prepare::<M, f32x8, _> { material, hits };
-        if let Some(lanes) = self.integrating() {
-            let prepared = level.run(kernel);
-            return Bsdf8 { prepared, level }.conserving_where(lanes);
-        }
         level.run_into(kernel, |prepared| Bsdf8 { prepared, level })
     }
 
