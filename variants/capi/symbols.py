@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 CALLS = (
-    ("hits, mixed or conserving", r"hits::packets|hits::store_rows|Integrate<|kernels::Prepare<|kernels::EvalPdf<|kernels::SampleWi<|Material8"),
+    ("hits that integrate", r"in_packets|Integrate<|kernels::Prepare<|kernels::EvalPdf<|kernels::SampleWi<|Bsdf8"),
     ("hits, evaluate", r"HitEvals"),
     ("hits, sample", r"HitSamples"),
     ("columns, weigh", r"Weighs|weigh_columns"),

@@ -4,8 +4,7 @@ use glam::Vec3;
 use hairis::columns::{EvalColumns, HitColumns, SampleColumns};
 use hairis::model::Model;
 use hairis::resample::{CandidateColumns, Counts, Partition, WeightColumns, choose};
-use hairis::simd::f32x8;
-use hairis::{Bsdf, FiberFrame, Hit, Lobe, LobeMask, Material, Vec3x8};
+use hairis::{Bsdf, Conserving, FiberFrame, Hit, Lobe, LobeMask, Material};
 use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
 
 /// Lengths of columns at one hit: less than a packet, one, pairs of the widest packets, and more than a chunk.
@@ -281,32 +280,6 @@ impl Rows {
             .expect("one length");
         (eval, sample)
     }
-
-    /// The answers of a material whose hits integrate their lobes, as those of C do.
-    fn integrated<M: Model>(&self, material: &Material<M>) -> ([Vec<f32>; 4], [Vec<f32>; 11]) {
-        let n = self.h.len();
-        let (mut eval, mut sample) = (results::<4>(n), results::<11>(n));
-        for i in 0..n {
-            let at = |columns: &[Vec<f32>; 3]| [0, 1, 2].map(|k| f32x8::splat(columns[k][i]));
-            let direction = |[x, y, z]: [f32x8; 3]| Vec3x8::new(x, y, z);
-            let hits = Hit::new(direction(at(&self.wo)), f32x8::splat(self.h[i]));
-            let bsdf = material.prepare8(&hits).conserving();
-            let (e, s) = (
-                bsdf.eval_pdf8(&direction(at(&self.wi))),
-                bsdf.sample8(&at(&self.xi)),
-            );
-            let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
-            let sampled = [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot];
-            let evaluated = e.value.into_iter().chain([e.pdf]);
-            for (column, lanes) in eval.iter_mut().zip(evaluated) {
-                column[i] = lanes.as_array()[0];
-            }
-            for (column, lanes) in sample.iter_mut().zip(sampled) {
-                column[i] = lanes.as_array()[0];
-            }
-        }
-        (eval, sample)
-    }
 }
 
 /// The parameters as the energy has them: scaled, or as they are.
@@ -328,11 +301,31 @@ impl Visitor for OverHits<'_> {
     fn visit<M: Registered>(self) -> Self::Output {
         let Self(values, energy, rows) = self;
         let params = params::<M>(values, energy);
+        // Raw materials of C have another type: their answers are those of this one to the bit.
         if energy == 1 {
-            rows.integrated(&Material::new(&M::MODEL, &params))
+            rows.answers(&Material::new(&Conserving(M::MODEL), &params))
         } else {
             rows.answers(&Material::new(&M::MODEL, &params))
         }
+    }
+}
+
+/// Calls at some hits, with all lobes and with some.
+fn at_hits<M: Model>(to: &mut Stream, material: &Material<M>) {
+    for length in LENGTHS {
+        let (wo, h) = (to.direction(), 2.2 * to.uniform() - 1.1);
+        to.floats(&[wo[0], wo[1], wo[2], h]);
+        let bsdf = material.prepare(Hit::new(Vec3::from(wo), h));
+        points(to, &bsdf);
+        columns(to, &bsdf, length);
+        let bits = length as u32 % 16;
+        to.word(bits);
+        let kept: Vec<Lobe> = Lobe::ALL
+            .into_iter()
+            .filter(|lobe| bits >> lobe.index() & 1 == 1)
+            .collect();
+        let restricted = bsdf.with_lobes(LobeMask::of(&kept));
+        points(to, &restricted);
     }
 }
 
@@ -345,23 +338,13 @@ impl Visitor for One<'_> {
         let Self(values, energy, to) = self;
         let material = Material::new(&M::MODEL, &params::<M>(values, energy));
         to.floats(&[material.max_albedo()]);
-        for length in LENGTHS {
-            let (wo, h) = (to.direction(), 2.2 * to.uniform() - 1.1);
-            to.floats(&[wo[0], wo[1], wo[2], h]);
-            let mut bsdf = material.prepare(Hit::new(Vec3::from(wo), h));
-            if energy == 1 {
-                bsdf = bsdf.conserving();
-            }
-            points(to, &bsdf);
-            columns(to, &bsdf, length);
-            let bits = length as u32 % 16;
-            to.word(bits);
-            let kept: Vec<Lobe> = Lobe::ALL
-                .into_iter()
-                .filter(|lobe| bits >> lobe.index() & 1 == 1)
-                .collect();
-            let restricted = bsdf.with_lobes(LobeMask::of(&kept));
-            points(to, &restricted);
+        if energy == 1 {
+            at_hits(
+                to,
+                &Material::new(&Conserving(M::MODEL), &params::<M>(values, energy)),
+            );
+        } else {
+            at_hits(to, &material);
         }
         for n in HITS {
             let rows = Rows::new(to, n);

@@ -66,6 +66,19 @@ impl<M: Model> Material<Conserving<M>> {
     pub fn integrates(&self) -> bool {
         M::unfit::<f32, f32>(&self.constants.fit) > 0.0
     }
+
+    /// The material without energy conservation: the bits of [`Material<M>`] with the type of this one. For hosts that choose at run
+    /// time, as a second type would double their code; the constants that change nothing are read all the same.
+    #[inline]
+    #[must_use]
+    pub fn raw(&self) -> Self {
+        let constants = ConservingMaterial {
+            inner: self.constants.inner,
+            // An albedo of 0 everywhere.
+            fit: LaneStruct::make(&Path::Root, &mut |_| 0.0),
+        };
+        Self { constants, ..*self }
+    }
 }
 
 /// A model with each channel of every shading point scaled so that its albedo is at most 1, as part of `prepare` and nothing

@@ -1,19 +1,15 @@
-//! One direction at each of many hits, on one material or on several.
-//!
-//! Hits in a row on one material are a slice call of Rust's. Others run as packets of eight: those whose materials differ, and
-//! those of materials that conserve energy by quadrature, beside which a packet costs little. A second kernel for these would
-//! be a third of the library.
+//! One direction at each of many hits, on one material or on several: a slice call of Rust's for the hits of each material.
 
 use crate::columns::{
     CHUNK, are_candidates, are_there, discard, evals, input, input3, output, samples,
 };
-use crate::handles::{is_conserving, material, model_of};
+use crate::handles::{material, model_of};
 use crate::layout::{ARGUMENT, Evals, Hits, OK, RawMaterial, Samples};
 use crate::models::visit;
+use core::ptr;
 use core::slice::from_raw_parts;
-use hairis::columns::{EvalColumns, HitColumns, SampleColumns};
-use hairis::{Bsdf8, Hit8, Material8, Vec3x8, f32x8};
-use hairis_variants::{ModelId, Registered};
+use hairis::columns::{EvalColumns, HitColumns, SampleColumns, in_groups};
+use hairis_variants::ModelId;
 
 /// Columns that a call takes besides hits: a direction to evaluate, or numbers to sample with.
 #[derive(Clone, Copy)]
@@ -69,6 +65,15 @@ unsafe fn optional<'a>(to: *mut f32, n: usize) -> Option<&'a mut [f32]> {
     (!to.is_null()).then(|| unsafe { output(to, n) })
 }
 
+/// `n` numbers; none if the host leaves them out.
+unsafe fn optional_input<'a>(from: *const f32, n: usize) -> &'a [f32] {
+    if from.is_null() {
+        return &[];
+    }
+    // SAFETY: the caller's promise.
+    unsafe { input(from, n) }
+}
+
 /// Three columns to write; `None` if the host leaves them out.
 unsafe fn optional3<'a>(to: [*mut f32; 3], n: usize) -> Option<[&'a mut [f32]; 3]> {
     // SAFETY: the caller's promise.
@@ -81,10 +86,6 @@ unsafe fn run(id: ModelId, raw: *const RawMaterial, rows: *const Rows, n: usize)
         // SAFETY: the tag is the model's; the caller's promise.
         unsafe {
             let (material, rows) = (material::<M>(raw), &*rows);
-            if !M::CONSERVES && is_conserving(raw) {
-                packets::<M>(&[raw; 8], true, rows, n);
-                return;
-            }
             let h = (!rows.h.is_null()).then(|| input(rows.h, n));
             let (hits, query) = (HitColumns { wo: input3(rows.wo, 0, n), h }, input3(rows.query, 0, n));
             // All columns have `n` numbers.
@@ -108,98 +109,6 @@ unsafe fn run(id: ModelId, raw: *const RawMaterial, rows: *const Rows, n: usize)
     });
 }
 
-/// Up to eight hits in a row, of one model and energy.
-unsafe fn run_mixed(
-    id: ModelId,
-    lanes: *const [*const RawMaterial; 8],
-    rows: *const Rows,
-    n: usize,
-) {
-    visit!(id, M, (lanes: *const [*const RawMaterial; 8], rows: *const Rows, n: usize) -> (), {
-        // SAFETY: the tags are the model's; the caller's promise.
-        unsafe { packets::<M>(&*lanes, is_conserving((*lanes)[0]), &*rows, n) };
-    });
-}
-
-/// Hits eight at a time, with one material per lane.
-#[inline(never)]
-unsafe fn packets<M: Registered>(
-    lanes: &[*const RawMaterial; 8],
-    conserve: bool,
-    rows: &Rows,
-    n: usize,
-) {
-    // SAFETY: the caller's promise.
-    let pack = Material8::<M>::pack(lanes.map(|raw| unsafe { material::<M>(raw) }));
-    let mut at = 0;
-    while at < n {
-        let count = 8.min(n - at);
-        // SAFETY: the caller's promise.
-        unsafe {
-            let rows = rows.after(at);
-            let hits = Hit8::new(load3(rows.wo, count), load(rows.h, count));
-            let bsdf = pack.prepare8(hits);
-            if !M::CONSERVES && conserve {
-                store_rows(&bsdf.conserving(), &rows, count);
-            } else {
-                store_rows(&bsdf, &rows, count);
-            }
-        }
-        at += count;
-    }
-}
-
-/// Evaluates or samples eight hits, and writes the first `count` of them.
-#[inline(never)]
-unsafe fn store_rows<M: Registered>(bsdf: &Bsdf8<M>, rows: &Rows, count: usize) {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let query = load3(rows.query, count);
-        match &rows.call {
-            Call::Eval(to) => {
-                let eval = bsdf.eval_pdf8(&query);
-                let [r, g, b] = &eval.value;
-                store([r, g, b, &eval.pdf], to, count);
-            }
-            Call::Sample(to) => {
-                let s = bsdf.sample8(&[query.x, query.y, query.z]);
-                let ([r, g, b], [wr, wg, wb]) = (&s.value, &s.weight);
-                let lanes = [
-                    &s.wi.x, &s.wi.y, &s.wi.z, r, g, b, &s.pdf, wr, wg, wb, &s.slot,
-                ];
-                store(lanes, to, count);
-            }
-        }
-    }
-}
-
-/// Up to eight numbers, 0 for the others; 0 where the host leaves the column out.
-unsafe fn load(from: *const f32, count: usize) -> f32x8 {
-    let mut lanes = [0.0; 8];
-    if !from.is_null() {
-        // SAFETY: the caller's promise.
-        lanes[..count].copy_from_slice(unsafe { input(from, count) });
-    }
-    f32x8::new(lanes)
-}
-
-/// Up to eight vectors.
-unsafe fn load3(from: [*const f32; 3], count: usize) -> Vec3x8 {
-    // SAFETY: the caller's promise.
-    let [x, y, z] = from.map(|from| unsafe { load(from, count) });
-    Vec3x8::new(x, y, z)
-}
-
-/// Writes the first `count` numbers of each column that the host wants.
-unsafe fn store<const N: usize>(lanes: [&f32x8; N], to: &[*mut f32; N], count: usize) {
-    for (lanes, to) in lanes.into_iter().zip(to) {
-        if !to.is_null() {
-            // SAFETY: the caller's promise.
-            unsafe { output(*to, count) }.copy_from_slice(&lanes.as_array()[..count]);
-        }
-    }
-}
-
 /// Whether three columns are all there, or none of them.
 fn are_whole(columns: [*mut f32; 3]) -> bool {
     let [first, rest @ ..] = columns;
@@ -207,38 +116,63 @@ fn are_whole(columns: [*mut f32; 3]) -> bool {
         .all(|column| column.is_null() == first.is_null())
 }
 
-/// Runs a call over hits in order: those of one material in a row, and up to eight of one model and energy.
+/// Runs a call over hits: those of one material at a time.
 unsafe fn run_all(materials: *const RawMaterial, index: Option<&[u32]>, rows: &Rows, n: usize) {
     // SAFETY: the caller's promise: indices are checked, and no material is empty.
     unsafe {
-        let Some(index) = index else {
-            if let Some(id) = model_of(materials) {
-                run(id, materials, rows, n);
+        let one = |index: u32, rows: &Rows, n: usize| {
+            let material = materials.add(index as usize);
+            if let Some(id) = model_of(material) {
+                run(id, material, rows, n);
             }
-            return;
         };
-        let at = |hit: usize| materials.add(index[hit] as usize);
-        let kind = |raw: *const RawMaterial| (model_of(raw), is_conserving(raw));
-        let mut done = 0;
-        while done < n {
-            let (first, rest) = (at(done), &index[done..]);
-            let (Some(id), _) = kind(first) else { return };
-            let alike = rest.iter().take_while(|other| **other == rest[0]).count();
-            let rows = rows.after(done);
-            if alike >= 8 || alike == rest.len() {
-                run(id, first, &rows, alike);
-                done += alike;
-                continue;
+        let Some(index) = index else {
+            return one(0, rows, n);
+        };
+        let (from, to) = (
+            |column: *const f32| optional_input(column, n),
+            |column: *mut f32| optional(column, n).unwrap_or_default(),
+        );
+        let ([u, v, w], [x, y, z]) = (rows.wo, rows.query);
+        let inputs = [u, v, w, rows.h, x, y, z].map(from);
+        let rows_of = |inputs: [&[f32]; 7], call: Call| {
+            let [u, v, w, h, x, y, z] = inputs.map(|column| {
+                if column.is_empty() {
+                    ptr::null()
+                } else {
+                    column.as_ptr()
+                }
+            });
+            Rows {
+                wo: [u, v, w],
+                h,
+                query: [x, y, z],
+                call,
             }
-            let mut lanes = [first; 8];
-            let mut count = 0;
-            while count < 8.min(rest.len()) && kind(at(done + count)) == kind(first) {
-                lanes[count] = at(done + count);
-                count += 1;
+        };
+        match rows.call {
+            Call::Eval(columns) => {
+                in_groups(index, inputs, columns.map(to), 1, |index, inputs, out| {
+                    let rows = rows_of(inputs, Call::Eval(out.map(address)));
+                    one(index[0], &rows, index.len());
+                });
             }
-            run_mixed(id, &lanes, &rows, count);
-            done += count;
+            Call::Sample(columns) => {
+                in_groups(index, inputs, columns.map(to), 1, |index, inputs, out| {
+                    let rows = rows_of(inputs, Call::Sample(out.map(address)));
+                    one(index[0], &rows, index.len());
+                });
+            }
         }
+    }
+}
+
+/// Where to write a column; null for one that the host leaves out.
+fn address(column: &mut [f32]) -> *mut f32 {
+    if column.is_empty() {
+        ptr::null_mut()
+    } else {
+        column.as_mut_ptr()
     }
 }
 

@@ -1,6 +1,6 @@
 //! A hit, and one direction at it: numbers in, structs by value out.
 
-use crate::handles::{bsdf, is_conserving, material, model_at, model_of, place};
+use crate::handles::{bsdf, material, model_at, model_of, place};
 use crate::layout::{EvalResult, LobeResult, RawBsdf, RawMaterial, SampleResult};
 use crate::models::{tag, visit};
 use glam::Vec3;
@@ -56,11 +56,8 @@ pub unsafe extern "C" fn hairis_prepare(
     let Some(id) = id else { return };
     visit!(id, M, (to: *mut RawBsdf, from: *const RawMaterial, u: f32, v: f32, w: f32, h: f32) -> (), {
         // SAFETY: the tag is the model's; the caller's promise.
-        let (material, to, conserve) = unsafe { (material::<M>(from), place::<M>(to), is_conserving(from)) };
-        let bsdf = material.prepare_into(Hit::new(Vec3::new(u, v, w), h), to);
-        if !M::CONSERVES && conserve {
-            *bsdf = bsdf.conserving();
-        }
+        let (material, to) = unsafe { (material::<M>(from), place::<M>(to)) };
+        material.prepare_into(Hit::new(Vec3::new(u, v, w), h), to);
     });
 }
 

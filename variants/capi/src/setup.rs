@@ -10,7 +10,7 @@ use crate::models::{self, visit};
 use crate::text::{Fault, List, array, copy, refuse, string};
 use core::ffi::c_char;
 use hairis::simd::Level;
-use hairis::{Material, ParamError};
+use hairis::{Conserving, Material, ParamError};
 use hairis_variants::{FieldError, Kind, ModelId, Parameters, Registered, Values};
 
 const _: () = assert!(
@@ -353,14 +353,20 @@ pub(crate) unsafe fn refuse_value(error: *mut Error, fault: &ParamError) -> i32 
 }
 
 /// The material of values: the only place that reads the energy which the host asks for, but for the head's.
-fn build<M: Registered>(values: &Values, energy: u32) -> Result<Material<M>, ParamError> {
+fn build<M: Registered>(
+    values: &Values,
+    energy: u32,
+) -> Result<Material<Conserving<M>>, ParamError> {
     let params: M::Params = Parameters::from_values(values)?;
-    let raw = Material::new(&M::MODEL, &params);
-    if energy != ENERGY_SCALED {
-        return Ok(raw);
+    let material = |params| Material::new(&Conserving(M::MODEL), params);
+    match energy {
+        ENERGY_CONSERVING => Ok(material(&params)),
+        ENERGY_SCALED => {
+            let scale = material(&params).raw().conserving_scale();
+            Ok(material(&params.scaled(scale)?).raw())
+        }
+        _ => Ok(material(&params).raw()),
     }
-    let scaled = params.scaled(raw.conserving_scale())?;
-    Ok(Material::new(&M::MODEL, &scaled))
 }
 
 /// `hairis_material_init`.
@@ -391,7 +397,7 @@ pub unsafe extern "C" fn hairis_material_init(
         unsafe {
             to.write_bytes(0, 1);
             (&raw mut (*to).head).write([models::tag(ModelId::of::<M>()), energy, 0, 0]);
-            (&raw mut (*to).body).cast::<Material<M>>().write(material);
+            (&raw mut (*to).body).cast::<Material<Conserving<M>>>().write(material);
         }
         Ok(())
     });
@@ -410,7 +416,7 @@ pub unsafe extern "C" fn hairis_material_max_albedo(from: *const RawMaterial) ->
     let max = id.and_then(|id| {
         visit!(id, M, (from: *const RawMaterial) -> f32, {
             // SAFETY: the tag is the model's.
-            unsafe { material::<M>(from) }.max_albedo()
+            unsafe { material::<M>(from) }.raw().max_albedo()
         })
     });
     max.unwrap_or(0.0)
