@@ -115,7 +115,7 @@ impl Visitor for Source<'_> {
             (Some(ShaderArithmetic::Gpu), _) | (None, _) => Target::Gpu,
             (Some(ShaderArithmetic::GpuNative), _) => Target::GpuNative,
         };
-        let mut program = Program::of::<M>(arithmetic);
+        let mut program = Program::of_id(ModelId::of::<M>(), arithmetic);
         let mut add = |name: &str, params: M::Params| -> Result<(), Error> {
             let scale = if flags.conserving {
                 Material::new(&M::MODEL, &params).conserving_scale()

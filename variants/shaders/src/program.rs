@@ -10,7 +10,7 @@ use hairis::Hit;
 use hairis::model::{Model, SampleLanes};
 use hairis::simd::trace::{Arithmetic, Exact, Fused, Gpu, GpuNative, Op};
 use hairis::simd::{LaneStruct, Path, Vec3x};
-use hairis_variants::{Parameters, Registered};
+use hairis_variants::{ModelId, Parameters, Registered, Visitor};
 
 /// A model's functions and records, for one target.
 #[derive(Clone, Debug)]
@@ -31,7 +31,7 @@ impl Program {
     #[must_use]
     pub fn of<M: Registered>(target: Target) -> Self {
         let mut name = M::NAME.replace('-', "_");
-        if !const { hairis_variants::ModelId::of::<M>().is_default() }
+        if !const { ModelId::of::<M>().is_default() }
             && let Some((_, word)) = M::CHOICE
         {
             name = format!("{name}_{}", word.replace('-', "_"));
@@ -53,6 +53,20 @@ impl Program {
             program.presets.push(constants(name, &params, &numbers));
         }
         program
+    }
+
+    /// As [`of`](Self::of), for an entry of the list that is chosen at run time. Tracing is a large function per model: it is
+    /// compiled here, and not in each crate that calls.
+    #[must_use]
+    pub fn of_id(id: ModelId, target: Target) -> Self {
+        struct Trace(Target);
+        impl Visitor for Trace {
+            type Output = Program;
+            fn visit<M: Registered>(self) -> Program {
+                Program::of::<M>(self.0)
+            }
+        }
+        id.visit(Trace(target))
     }
 
     /// Traces any model, under a name that is an identifier in C.
