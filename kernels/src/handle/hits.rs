@@ -4,7 +4,9 @@ use crate::columns::{
     EvalColumns, HitColumns, LengthError, SAMPLE, SAMPLE_OF_BOTH, SampleColumns, VALUE_PDF, WI, XI,
     check_length, in_groups,
 };
-use crate::handle::kernels::{AtHits, EightHits, HitEvals, HitEvalsSamples, HitRow, HitSamples};
+use crate::handle::kernels::{
+    AtHits, EightHits, EightPrepared, HitEvals, HitEvalsSamples, HitRow, HitSamples,
+};
 use crate::model::Model;
 use crate::simd::columns::copy_few;
 use crate::simd::dispatch::clean_upper_halves;
@@ -212,7 +214,8 @@ fn in_packets<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize>(
         let input = inputs.map(|column| packet(column.get(first..).unwrap_or_default()));
         let wo = Vec3x::new(input[0], input[1], input[2]);
         let bsdf = prepare(&Hit::new(wo, input[3]));
-        let rows = K::at8(&bsdf, &input);
+        let row = EightPrepared::<M, K, I, N>::new(&bsdf, &input);
+        let rows = bsdf.level.run(row);
         for (lanes, column) in rows.iter().zip(outputs.iter_mut()) {
             copy_few(
                 lanes.as_array(),

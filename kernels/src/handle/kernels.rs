@@ -194,9 +194,6 @@ pub(crate) trait HitRow<M: Model, const I: usize, const N: usize> {
     /// Numbers of each lane at a prepared hit.
     fn at<L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>, input: [L; I]) -> [L; N];
 
-    /// Numbers of each lane at hits of eight lanes, by the kernels of packets.
-    fn at8(bsdf: &Bsdf8<M>, input: &[f32x8; I]) -> [f32x8; N];
-
     /// Numbers of each lane.
     #[inline(always)]
     fn row<L: Lanes, C: Broadcast<L>>(material: &M::Material<C>, input: [L; I]) -> [L; N] {
@@ -216,11 +213,6 @@ impl<M: Model> HitRow<M, 7, 4> for HitEvals {
     ) -> [L; 4] {
         value_pdf(M::eval::<L, C>(prepared, Vec3x::new(x, y, z)))
     }
-
-    #[inline]
-    fn at8(bsdf: &Bsdf8<M>, [_, _, _, _, x, y, z]: &[f32x8; 7]) -> [f32x8; 4] {
-        value_pdf(bsdf.eval_pdf8(&Vec3x::new(*x, *y, *z)))
-    }
 }
 
 /// Columns of samples, from three uniform numbers.
@@ -232,11 +224,6 @@ impl<M: Model> HitRow<M, 7, 11> for HitSamples {
         [_, _, _, _, x, y, z]: [L; 7],
     ) -> [L; 11] {
         columns(M::sample::<L, C>(prepared, [x, y, z]))
-    }
-
-    #[inline]
-    fn at8(bsdf: &Bsdf8<M>, [_, _, _, _, x, y, z]: &[f32x8; 7]) -> [f32x8; 11] {
-        columns(bsdf.sample8(&[*x, *y, *z]))
     }
 }
 
@@ -253,12 +240,6 @@ impl<M: Model> HitRow<M, 10, 15> for HitEvalsSamples {
             value_pdf(eval),
             columns(M::sample::<L, C>(prepared, [x, y, z])),
         )
-    }
-
-    #[inline]
-    fn at8(bsdf: &Bsdf8<M>, [_, _, _, _, u, v, w, x, y, z]: &[f32x8; 10]) -> [f32x8; 15] {
-        let eval = bsdf.eval_pdf8(&Vec3x::new(*u, *v, *w));
-        joined(value_pdf(eval), columns(bsdf.sample8(&[*x, *y, *z])))
     }
 }
 
@@ -312,6 +293,61 @@ impl<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize> Row<I, N> for
     }
 }
 
+/// Eight prepared hits: for materials that integrate their lobes.
+pub(crate) struct EightPrepared<'a, M: Model, K, const I: usize, const N: usize> {
+    prepared: &'a M::Prepared<f32x8>,
+    input: &'a [f32x8; I],
+    columns: PhantomData<K>,
+}
+
+impl<'a, M: Model, K, const I: usize, const N: usize> EightPrepared<'a, M, K, I, N> {
+    #[inline]
+    pub(crate) fn new(bsdf: &'a Bsdf8<M>, input: &'a [f32x8; I]) -> Self {
+        Self {
+            prepared: &bsdf.prepared,
+            input,
+            columns: PhantomData,
+        }
+    }
+}
+
+impl<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize> Kernel
+    for EightPrepared<'_, M, K, I, N>
+{
+    type Output = [f32x8; N];
+    // Beside the integral more registers save nothing.
+    const MANY_REGISTERS: bool = false;
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; N] {
+        store_lanes(K::at::<L, f32x8>(self.prepared, lanes_of(self.input)))
+    }
+}
+
+/// The lanes of packets.
+#[inline(always)]
+fn lanes_of<L: Lanes<Stored = f32x8>, const I: usize>(input: &[f32x8; I]) -> [L; I] {
+    let mut lanes = [L::splat(0.0); I];
+    let mut i = 0;
+    while i < I {
+        lanes[i] = input[i].fresh_lanes();
+        i += 1;
+    }
+    lanes
+}
+
+/// The packets of lanes.
+#[inline(always)]
+fn store_lanes<L: Lanes<Stored = f32x8>, const N: usize>(lanes: [L; N]) -> [f32x8; N] {
+    let mut out = [f32x8::ZERO; N];
+    let mut i = 0;
+    while i < N {
+        out[i] = lanes[i].store();
+        i += 1;
+    }
+    out
+}
+
 /// Eight hits, each on a material of its own.
 pub(crate) struct EightHits<'a, M: Model, K, const I: usize, const N: usize> {
     material: &'a M::Material<f32x8>,
@@ -339,20 +375,7 @@ impl<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize> Kernel
 
     #[inline(always)]
     fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; N] {
-        let mut input = [L::splat(0.0); I];
-        let mut i = 0;
-        while i < I {
-            input[i] = self.input[i].fresh_lanes();
-            i += 1;
-        }
-        let row = K::row::<L, f32x8>(self.material, input);
-        let mut out = [f32x8::ZERO; N];
-        i = 0;
-        while i < N {
-            out[i] = row[i].store();
-            i += 1;
-        }
-        out
+        store_lanes(K::row::<L, f32x8>(self.material, lanes_of(self.input)))
     }
 }
 
