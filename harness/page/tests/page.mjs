@@ -206,6 +206,8 @@ async function states() {
   check('reset is the first view', await page.evaluate(() => JSON.stringify(hairis.state)) === first);
   await page.getByLabel('beta R, °').fill('-4');
   check('a refusal is a sentence', (await page.locator('#refusal').textContent()).startsWith('beta[0] must be a width in [1e-4, pi] rad, got -0.0698'), await page.locator('#refusal').textContent());
+  for (const lobe of ['r', 'tt', 'trt', 'glint']) await page.getByLabel(lobe, { exact: true }).uncheck();
+  await page.waitForFunction(() => document.getElementById('sentence').textContent.includes('Gaussian reflects no light'));
   await page.locator('#numbers summary').click();
   await page.locator('#json-0').fill('{"model":"kajiya-kay","params":{"kd":[0.2,0.2,0.2],"ks":[0.1,0.1,0.1],"exponent":40},"wo":[0,1,0]}');
   await page.locator('#json-0').blur();
@@ -217,7 +219,7 @@ async function states() {
     check('wrong JSON gets a sentence', (await page.locator('#refusal').textContent()).includes(words), await page.locator('#refusal').textContent());
   }
   await page.context().close();
-  for (const hash of ['#nonsense', '#%7B%22materials%22%3A%5B%5D%7D', `#${encodeURIComponent('{"view":{"theta":200,"h":0}}')}`]) {
+  for (const hash of ['#nonsense', '#%7B%22materials%22%3A%5B%5D%7D', ...['{"view":{"theta":200,"h":0}}', '{"turn":null}', '{"lobes":"all"}'].map(text => `#${encodeURIComponent(text)}`)]) {
     const wrong = await open(hash);
     check('a wrong link gets a sentence', (await wrong.locator('#notice').textContent()).startsWith('The link was not read: '), hash);
     await wrong.context().close();

@@ -219,7 +219,7 @@ function build() {
         build(); changed(); commit();
       }));
       if (of.entries.length > 1)
-        row.append(choice(of.choice, of.entries.map(({ word }) => ({ value: word })), own.word, word => { own.word = word; changed(); commit(); }));
+        row.append(choice(`${of.choice} ${'AB'[which]}`, of.entries.map(({ word }) => ({ value: word })), own.word, word => { own.word = word; changed(); commit(); }));
       return row;
     }),
     haveSameFields() ? make('div', { class: 'checks' }, check('same parameters', state.linked, on => {

@@ -113,16 +113,19 @@ function drawMaps() {
   canvases.forEach(canvas => canvas.mark(state.cut, state.view.theta));
 }
 
-/// Tables from radiance to bytes of sRGB, one per row for its cosine, in 32 steps.
+/// Tables from radiance to bytes of sRGB, one per row for its cosine, in 32 steps; kept as long as the peak stays within a power of 2.
 function toneOf(peak) {
-  const by = 8 / peak, steps = Array.from({ length: 33 }, (_, i) => {
+  const power = Math.ceil(Math.log2(peak));
+  if (toneOf.power === power) return toneOf.tone;
+  const by = 10 / 2 ** power, steps = Array.from({ length: 33 }, (_, i) => {
     const bytes = Uint8Array.from({ length: STEPS }, (_, at) => Math.round(255 * toSrgb(at / (STEPS - 1))));
     return table(value => {
       const x = value * (i / 32) * by;
       return bytes[Math.min(STEPS - 1, x / (1 + x) * (STEPS - 1) | 0)];
     }, new Uint8Array(65536), 32640);
   });
-  return { rows: Array.from(MAP.cos, cos => steps[Math.round(32 * cos)]) };
+  toneOf.power = power;
+  return toneOf.tone = { rows: Array.from(MAP.cos, cos => steps[Math.round(32 * cos)]) };
 }
 
 const ALONG = Array.from({ length: 721 }, (_, i) => -90 + i / 4), AROUND = Array.from({ length: 721 }, (_, i) => -180 + i / 2);
@@ -168,7 +171,7 @@ function describe() {
     canvases[slot].context.canvas.setAttribute('aria-label', `S cos theta of ${titleOf(slot)} over the sphere; arrow keys move the cut`);
   }
   canvases[2].context.canvas.setAttribute('aria-label', 'Difference of both maps; arrow keys move the cut');
-  $('difference').textContent = `B − A, L1 ${percent(figures.difference.l1)}`;
+  $('difference').textContent = Number.isFinite(figures.difference.l1) ? `B − A, L1 ${percent(figures.difference.l1)}` : 'B − A';
   const angle = x => minus(`${+x.toFixed(1)}°`);
   $('along-note').textContent = `φᵢ ${angle(state.cut.phi)}`;
   $('around-note').textContent = `θᵢ ${angle(state.cut.theta)}`;
@@ -211,6 +214,10 @@ function answer() {
   const { l1, error } = figures.difference, [a, b] = [titleOf(0), titleOf(1)], [of, other] = figures.maps;
   const view = minus(`${+state.view.theta.toFixed(1)}°`), ratio = other.total / of.total - 1;
   const sentences = [];
+  if (!(of.total > 0 && other.total > 0)) {
+    fill($('answer'), make('div', { class: 'figure', id: 'l1' }, '–'), make('p', { id: 'sentence' }, `Seen from ${view}, ${of.total > 0 ? b : a} reflects no light.`));
+    return;
+  }
   const light = Math.abs(ratio) < 5e-4 ? 'as much light' : `${percent(Math.abs(ratio))} ${ratio > 0 ? 'more' : 'less'} light`;
   sentences.push(l1 < 5e-4
     ? `Seen from ${view}, ${b} scatters as ${a} does.`
@@ -222,9 +229,10 @@ function answer() {
   const [published, tried, matched] = [v(0, 'published'), v(1, 'published'), v(0, 'matched')];
   let verdict = '';
   if (published && tried && matched && state.materials[0].model !== state.materials[1].model) {
-    const saved = tried.map((value, place) => 1 - value / published[place]), best = saved.indexOf(Math.max(...saved));
+    // Lights that a material returns nothing of have no V.
+    const saved = tried.map((value, place) => Number.isFinite(value / published[place]) ? 1 - value / published[place] : -Infinity), best = saved.indexOf(Math.max(...saved));
     const rival = 1 - matched[best] / published[best], share = x => `${percent(Math.abs(x))} ${x >= 0 ? 'fewer' : 'more'}`;
-    sentences.push(`With the published sampler ${b} needs ${share(saved[best])} samples under the ${LIGHTS[best].name}${LIGHTS[best].name.endsWith('light') ? '' : ' light'}, where it gains most; the matched sampler of ${a} needs ${share(rival)} and keeps the look.`);
+    sentences.push(`With the published sampler ${b} needs ${share(saved[best])} samples under the ${LIGHTS[best].name}${/light|sun$/.test(LIGHTS[best].name) ? '' : ' light'}, where it gains most; the matched sampler of ${a} needs ${share(rival)} and keeps the look.`);
     verdict = saved[best] <= 0.1 ? 'Not here.' : rival >= saved[best] ? 'Not with a better sampler at hand.' : 'For its samples, here it is.';
     sentences.unshift(`Is ${b} worth it in place of ${a}? ${verdict}`);
   } else {
@@ -283,9 +291,9 @@ function texts() {
     shader.value = `[${constants.join(', ')}]`;
     return make('div', { class: slot ? 'slot-b' : 'slot-a' },
       make('p', { class: 'title' }, make('span', { class: 'chip' }, `${'AB'[slot]}: ${titleOf(slot)}`)),
-      make('p', { class: 'note' }, 'A line for `hairis eval`; an edited line becomes the material.'), area,
+      make('p', { class: 'note' }, 'A line for the command hairis eval; an edited line becomes the material.'), area,
       make('div', { class: 'bar' }, copyButton('Copy JSON', () => area.value), copyButton('Copy numbers', () => shader.value)),
-      make('p', { class: 'note' }, `The ${count} constants of the material, as the functions of \`hairis shader\` take them.`), shader);
+      make('p', { class: 'note' }, `The ${count} constants of the material, as the functions that hairis shader prints take them.`), shader);
   }));
 }
 
@@ -404,7 +412,7 @@ async function start() {
   listen();
   requestAnimationFrame(animate);
   globalThis.hairis = { kernel, figures, request, show, timeMap, tuft, get state() { return state; } };
-  $('about').textContent = 'θ is the inclination to the normal plane of the fibre, φ the azimuth around it; the viewer is at φ 0°. Angles, lights and figures are those of `hairis eval` and `hairis compare`. Nothing is loaded from elsewhere, and nothing leaves this page.';
+  $('about').textContent = 'θ is the inclination to the normal plane of the fibre, φ the azimuth around it; the viewer is at φ 0°. Angles, lights and figures are those of the commands hairis eval and hairis compare. Nothing is loaded from elsewhere, and nothing leaves this page.';
 }
 
 start();

@@ -124,7 +124,7 @@ function niceStep(range, most) {
 /// A plot of lines over an axis in degrees.
 function plot(canvas, { lines, range, ticks, label, unit, log, marker, top, guides = [] }) {
   const { context, width, height } = fitted(canvas, 200);
-  const [left, right, upper, lower] = [44, 8, 10, 34], w = width - left - right, h = height - upper - lower;
+  const [left, right, upper, lower] = [44, 16, 10, 34], w = width - left - right, h = height - upper - lower;
   const peak = top ?? Math.max(1e-12, ...lines.flatMap(({ y }) => Array.from(y)));
   const least = log ? peak * 10 ** -DECADES : 0;
   const px = x => left + (x - range[0]) / (range[1] - range[0]) * w;

@@ -64,13 +64,20 @@ function readLink(hash) {
       const refusal = checkMaterial(material) || kernel.setMaterial(slot, material);
       if (refusal) throw new Error(refusal);
     });
-    for (const [name, least, most] of [['theta', -90, 90], ['h', -1, 1]])
-      if (!(found.view?.[name] >= least && found.view[name] <= most)) throw new Error(`${name} must be in [${least}, ${most}], got ${found.view?.[name]}`);
-    for (const name of ['theta', 'phi']) if (!Number.isFinite(found.cut?.[name])) throw new Error(`cut.${name} must be a number, got ${found.cut?.[name]}`);
+    const { materials, ...rest } = initialState();
+    for (const [name, like] of Object.entries(rest)) if (!isLike(found[name], like)) throw new Error(`${name} must be like ${JSON.stringify(like)}, got ${JSON.stringify(found[name])}`);
+    for (const [name, value, most] of [['view.theta', found.view.theta, 90], ['view.h', found.view.h, 1], ['cut.theta', found.cut.theta, 90], ['cut.phi', found.cut.phi, 180]])
+      if (!(Math.abs(value) <= most)) throw new Error(`${name} must be in [-${most}, ${most}], got ${value}`);
     return { state: found };
   } catch (error) {
     return { state: initialState(), refusal: `The link was not read: ${error.message}. The page shows its first view.` };
   }
+}
+
+/// Whether a value has the shape of another: the same type, and the same entries.
+function isLike(value, like) {
+  if (typeof like !== 'object') return typeof value === typeof like && (typeof like !== 'number' || Number.isFinite(value));
+  return typeof value === 'object' && value !== null && Object.entries(like).every(([name, entry]) => isLike(value[name], entry));
 }
 
 /// Checks the shape of values; a refusal as text, or nothing.

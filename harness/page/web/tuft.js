@@ -24,7 +24,7 @@ function growTuft() {
     const around = 2 * Math.PI * random(), out = Math.sqrt(random()), length = 1.5 + 0.35 * random(), wave = 0.02 + 0.035 * random(), phase = around * 3 + random();
     const [cos, sin] = [Math.cos(around), Math.sin(around)], spread = 0.18 + 0.5 * out + 0.06 * random();
     for (let i = 0; i < POINTS; i++, at += 3) {
-      const t = i / (POINTS - 1), far = 0.16 * out + spread * (1 - (1 - t) ** 2) * 0.85, swing = wave * Math.sin(9 * t + phase) * t;
+      const t = i / (POINTS - 1), far = 0.05 * out + spread * (1 - (1 - t) ** 2) * 0.85, swing = wave * Math.sin(9 * t + phase) * t;
       points[at] = cos * far - sin * swing + 0.1 * t * t;
       points[at + 1] = 0.82 + 0.28 * Math.sin(Math.min(1, 1.6 * t) * Math.PI) * (0.35 + 0.65 * out) - length * t ** 1.5;
       points[at + 2] = sin * far + cos * swing;
@@ -141,6 +141,8 @@ async function stepTuft() {
   try {
     const step = nextStep();
     for (const slot of [0, 1]) {
+      // The module shades one picture a frame, so that sliders stay quick.
+      if (slot && !tuft.isGpu) await new Promise(requestAnimationFrame);
       const out = await shade(slot, step, tuft.isGpu);
       if (generation !== tuft.generation) return;
       const sums = tuft.sums[slot];
