@@ -15,7 +15,7 @@ cp "$target/page-build/wasm32-unknown-unknown/release/hairis_page.wasm" "$out/ha
 # Indentation is a twentieth of the page.
 sed 's/^ *//' web/index.html > "$out/index.html"
 cat web/{kernel,state,figures,plots,inputs,controls,light,gpu,tuft,words,main}.js > "$target/page-build/page.js"
-if command -v npx > /dev/null; then npx --yes esbuild@0.28.2 --log-level=warning --minify --format=iife "$target/page-build/page.js" --outfile="$out/page.js"
+if command -v npx > /dev/null; then npx --yes esbuild@0.28.2 --log-level=warning --minify --charset=utf8 --format=iife "$target/page-build/page.js" --outfile="$out/page.js"
 else cp "$target/page-build/page.js" "$out"; fi
 hairis=("${HAIRIS:-}")
 [ -n "${HAIRIS:-}" ] || hairis=(cargo run -q --release --locked --manifest-path "$root/Cargo.toml" -p hairis-harness --)

@@ -6,7 +6,7 @@ import { readFileSync, readdirSync, statSync } from 'node:fs';
 import { mkdtemp } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { extname, join } from 'node:path';
-import { deflateSync } from 'node:zlib';
+import { exr, radiance } from './maps.mjs';
 
 const [folder, hairis, executablePath] = process.argv.slice(2);
 const MOST_BYTES = 250_000,
@@ -244,6 +244,29 @@ async function comparison() {
   await page.context().close();
 }
 
+/// Albedos are those of the maps, and at most 1 with energy conservation.
+async function albedos() {
+  const page = await open();
+  for (const theta of [-60, 0, 45]) {
+    const { map, plain, conserving } = await page.evaluate(async theta => {
+      const { model, word, values } = hairis.state.materials[0];
+      hairis.show({ model, word, values, artist: null }, { theta, h: 0 }, { theta: 0, phi: 0 });
+      await new Promise(done => setTimeout(done, 300));
+      const [conserving, plain] = hairis.figures.albedo,
+        at = plain.x.indexOf(theta);
+      return { map: hairis.figures.maps[0].total, plain: plain.y[at], conserving: conserving.y };
+    }, theta);
+    check('the albedo is the integral of the map', isClose(map, plain, 1e-3), `${theta}: ${map} and ${plain}`);
+    check(
+      'energy is conserved',
+      conserving.every(albedo => albedo <= 1 + 1e-6),
+      conserving.join(),
+    );
+  }
+  console.log('albedos are integrals of the maps, and at most 1 with energy conservation');
+  await page.context().close();
+}
+
 /// A link, undo, redo, reset, JSON, and refusals in a sentence.
 async function states() {
   const page = await open(),
@@ -365,46 +388,6 @@ async function views() {
   console.log('390 and 1280 pixels, light and dark, reduced motion, samples');
 }
 
-/// An OpenEXR map of scanlines, red, green and blue in half precision, in blocks that ZIP compresses or none does.
-function exr(isZip) {
-  const [width, height] = [32, 16],
-    attribute = (name, type, body) => Buffer.concat([Buffer.from(`${name}\0${type}\0`), int(body.length), body]);
-  const int = (...numbers) => Buffer.from(Int32Array.from(numbers).buffer);
-  const channels = Buffer.concat([
-    ...['B', 'G', 'R'].map(name => Buffer.concat([Buffer.from(`${name}\0`), int(1, 0, 1, 1)])),
-    Buffer.from([0]),
-  ]);
-  const head = Buffer.concat([
-    Buffer.from([0x76, 0x2f, 0x31, 1, 2, 0, 0, 0]),
-    attribute('channels', 'chlist', channels),
-    attribute('compression', 'compression', Buffer.from([isZip ? 3 : 0])),
-    attribute('dataWindow', 'box2i', int(0, 0, width - 1, height - 1)),
-    attribute('displayWindow', 'box2i', int(0, 0, width - 1, height - 1)),
-    attribute('lineOrder', 'lineOrder', Buffer.from([0])),
-    Buffer.from([0]),
-  ]);
-  const rows = isZip ? 16 : 1,
-    blocks = [];
-  for (let y = 0; y < height; y += rows) {
-    // 1.0 is 0x3c00, and 0.5 is 0x3800.
-    const raw = Buffer.from(Uint16Array.from({ length: 3 * width * rows }, (_, i) => (i % 5 ? 0x3800 : 0x3c00)).buffer);
-    let body = raw;
-    if (isZip) {
-      const halves = Buffer.from([...raw.filter((_, i) => !(i & 1)), ...raw.filter((_, i) => i & 1)]);
-      body = deflateSync(halves.map((byte, i) => (i ? byte - halves[i - 1] + 128 : byte)));
-    }
-    blocks.push(Buffer.concat([int(y, body.length), body]));
-  }
-  return Buffer.concat([head, Buffer.alloc(8 * blocks.length), ...blocks]);
-}
-
-/// A map of Radiance whose rows are not packed.
-const radiance = (width, height) =>
-  Buffer.concat([
-    Buffer.from(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${height} +X ${width}\n`),
-    Buffer.alloc(4 * width * height, 129),
-  ]);
-
 /// The tuft with WebGPU and without it, its light from files, and wrong files.
 async function tuft() {
   for (const gpu of [true, false]) {
@@ -479,7 +462,7 @@ async function tuft() {
   console.log('the tuft with WebGPU and without, light from files, wrong files');
 }
 
-const all = { sizes, times, sliders, values, comparison, states, views, tuft };
+const all = { sizes, times, sliders, values, comparison, albedos, states, views, tuft };
 for (const name of process.argv[5]?.split(',') ?? Object.keys(all)) {
   try {
     await all[name]();

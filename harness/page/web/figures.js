@@ -261,16 +261,25 @@ function profile(slot, entry, view, masks, directions) {
   });
 }
 
-/// Directional albedo, mean over the channels, at inclinations in degrees.
-function albedoCurve(slot, lobes, conserving, inclinations) {
+/// Directional albedo, mean over the channels, at inclinations in degrees: as it is, and as `Conserving` leaves it, with each channel
+/// divided by the albedo of all lobes where that is above 1; it leaves models alone that conserve energy by their parameters.
+function albedoCurves(slot, model, lobes, inclinations) {
   inclinations.forEach((theta, at) => {
     kernel.work[0][at] = Math.sin(theta * RAD);
   });
-  kernel.calls.albedos(slot, conserving, inclinations.length);
-  return inclinations.map((_, at) => {
-    let sum = 0;
-    for (let lobe = 0; lobe < 4; lobe++)
-      if ((lobes >> lobe) & 1) for (let c = 0; c < 3; c++) sum += kernel.work[1 + 3 * lobe + c][at] / 3;
-    return sum;
-  });
+  kernel.calls.albedos(slot, inclinations.length);
+  const plain = inclinations.map(() => 0),
+    conserving = inclinations.map(() => 0);
+  for (let at = 0; at < inclinations.length; at++)
+    for (let c = 0; c < 3; c++) {
+      let [all, shown] = [0, 0];
+      for (let lobe = 0; lobe < 4; lobe++) {
+        const albedo = kernel.work[1 + 3 * lobe + c][at];
+        all += albedo;
+        if ((lobes >> lobe) & 1) shown += albedo;
+      }
+      plain[at] += shown / 3;
+      conserving[at] += shown / (model.conserves ? 1 : Math.max(1, all)) / 3;
+    }
+  return [conserving, plain];
 }

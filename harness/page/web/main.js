@@ -225,14 +225,15 @@ function drawAlbedo() {
   const inclinations = Array.from({ length: 59 }, (_, i) => -87 + 3 * i),
     lines = [];
   for (const slot of [0, 1])
-    for (const conserving of [true, false])
+    albedoCurves(slot, kernel.model(state.materials[slot].model), state.lobes, inclinations).forEach((y, place) =>
       lines.push({
         x: inclinations,
-        y: albedoCurve(slot, state.lobes, conserving, inclinations),
+        y,
         color: colors.slots[slot],
-        dash: conserving ? [5, 3] : [],
-        weight: conserving ? 1.5 : 2,
-      });
+        dash: place ? [] : [5, 3],
+        weight: place ? 2 : 1.5,
+      }),
+    );
   figures.albedo = lines;
   $('albedo').setAttribute(
     'aria-label',

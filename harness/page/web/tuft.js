@@ -12,7 +12,6 @@ const SIDE = 320,
   SLICES = 48,
   OPACITY = 0.09;
 const tuft = {
-  hits: null,
   steps: 0,
   sums: [],
   gpu: null,
