@@ -38,5 +38,5 @@ cargo clippy -q --locked --manifest-path harness/page/Cargo.toml --target-dir "$
 hairis=${HAIRIS:-$(.ci/release.sh)/hairis}
 HAIRIS=$hairis "${bootstrap[@]}" harness/page/build.sh "${arguments[@]}"
 npm install --silent --no-save --prefix "$tools/page" playwright-core@1.65.1
-cp harness/page/tests/page.mjs "$tools/page"
+cp harness/page/tests/*.mjs "$tools/page"
 node "$tools/page/page.mjs" "$target/page" "$hairis" "$chromium" "$@"

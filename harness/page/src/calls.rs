@@ -15,7 +15,7 @@ pub(crate) struct Calls {
     pub(crate) eval: fn(&Slot, &mut Columns, usize),
     pub(crate) sample: fn(&Slot, &mut Columns, usize),
     pub(crate) hits: fn(&Slot, &mut Columns, usize),
-    pub(crate) albedos: fn(&Slot, &mut Columns, usize, bool),
+    pub(crate) albedos: fn(&Slot, &mut Columns, usize),
     pub(crate) constants: fn(&Slot, &mut [f32]) -> usize,
 }
 
@@ -115,7 +115,7 @@ fn hits<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize) {
     }
 }
 
-fn albedos<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize, conserving: bool) {
+fn albedos<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize) {
     if const { !is_first::<M>() } {
         return;
     }
@@ -124,12 +124,7 @@ fn albedos<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize, cons
         let sin = columns[0][place].clamp(-1.0, 1.0);
         let cos = libm::sqrtf((1.0 - sin) * (1.0 + sin));
         let bsdf = material.prepare(Hit::new(Vec3::new(sin, cos, 0.0), slot.hit.h));
-        let bsdf = if conserving && !M::CONSERVES {
-            bsdf.conserving()
-        } else {
-            bsdf
-        };
-        let albedo = slot.restricted(&bsdf).albedo();
+        let albedo = bsdf.albedo();
         for (column, number) in columns[1..].iter_mut().zip(albedo.0.as_flattened()) {
             column[place] = *number;
         }

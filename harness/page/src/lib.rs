@@ -141,13 +141,13 @@ pub extern "C" fn eval_hits(slot: usize, count: usize) {
     (Calls::of(slot.first()).hits)(slot, work, count.min(COLUMN));
 }
 
-/// Directional albedos of the four lobes, linear RGB, for `count` inclinations of the view, whose sines are in the first column of
+/// Directional albedos of all four lobes, linear RGB, for `count` inclinations of the view, whose sines are in the first column of
 /// `work`: twelve columns follow, by lobe and channel.
 #[unsafe(no_mangle)]
-pub extern "C" fn albedos(slot: usize, conserving: bool, count: usize) {
+pub extern "C" fn albedos(slot: usize, count: usize) {
     let Memory { slots, work, .. } = memory();
     let slot = &slots[slot & 1];
-    (Calls::of(slot.first()).albedos)(slot, work, count.min(COLUMN), conserving);
+    (Calls::of(slot.first()).albedos)(slot, work, count.min(COLUMN));
 }
 
 /// Constants of a slot's material, in the order in which generated shaders take them, in the first column of `work`; returns their

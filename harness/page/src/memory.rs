@@ -44,7 +44,7 @@ impl fmt::Write for Text {
     }
 }
 
-/// What starts as zeros, and takes no space in the file.
+/// Memory that starts as zeros, and takes no space in the file.
 struct Zeros {
     text: Text,
     numbers: [f32; 32],

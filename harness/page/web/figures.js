@@ -9,14 +9,15 @@ class SphereGrid {
     for (let row = 0; row < height; row++) {
       const [upper, centre, lower] = [row, row + 0.5, row + 1].map(at => Math.PI * (0.5 - at / height));
       this.cos[row] = Math.cos(centre);
-      this.area[row] = (Math.sin(upper) - Math.sin(lower)) * 2 * Math.PI / width;
+      this.area[row] = ((Math.sin(upper) - Math.sin(lower)) * 2 * Math.PI) / width;
     }
   }
 
   write([x, y, z]) {
     for (let row = 0, at = 0; row < this.height; row++) {
       const theta = Math.PI * (0.5 - (row + 0.5) / this.height);
-      const sin = Math.sin(theta), cos = Math.cos(theta);
+      const sin = Math.sin(theta),
+        cos = Math.cos(theta);
       for (let column = 0; column < this.width; column++, at++) {
         const phi = 2 * Math.PI * ((column + 0.5) / this.width - 0.5);
         x[at] = sin;
@@ -28,7 +29,8 @@ class SphereGrid {
 
   /// Cell of a direction.
   cell(x, y, z) {
-    const theta = Math.asin(Math.max(-1, Math.min(1, x))), phi = Math.atan2(z, y);
+    const theta = Math.asin(Math.max(-1, Math.min(1, x))),
+      phi = Math.atan2(z, y);
     const row = Math.min(this.height - 1, Math.floor((0.5 - theta / Math.PI) * this.height));
     return [(phi / (2 * Math.PI) + 0.5) * this.width, (0.5 - theta / Math.PI) * this.height, row];
   }
@@ -36,15 +38,19 @@ class SphereGrid {
 
 const MAP = new SphereGrid(WIDTH, HEIGHT);
 // Densities of samplers have steps in the inclination, so that rows count for more than columns there.
-const FINE = new SphereGrid(256, 512), COARSE = new SphereGrid(128, 256);
+const FINE = new SphereGrid(256, 512),
+  COARSE = new SphereGrid(128, 256);
 
 /// Directions of unit solid angles over the support of a light, as columns and weights.
 function patch(cells, place) {
-  const columns = [0, 1, 2].map(() => new Float32Array(cells * cells)), weight = new Float64Array(cells * cells);
+  const columns = [0, 1, 2].map(() => new Float32Array(cells * cells)),
+    weight = new Float64Array(cells * cells);
   for (let i = 0, at = 0; i < cells; i++)
     for (let j = 0; j < cells; j++, at++) {
       const { dir, solid } = place((i + 0.5) / cells, (j + 0.5) / cells);
-      turned(dir).forEach((x, axis) => { columns[axis][at] = x; });
+      turned(dir).forEach((x, axis) => {
+        columns[axis][at] = x;
+      });
       weight[at] = solid / (cells * cells);
     }
   return { columns, weight, count: cells * cells };
@@ -57,20 +63,28 @@ const turned = ([u, v, w]) => {
   return [u, v * cos + w * sin, w * cos - v * sin];
 };
 
-const SUN = direction(-60, 25), SUN_HEIGHT = 2 * Math.sin(0.25 * 5 * RAD) ** 2, HALF_SIDES = [2, 0.5];
+const SUN = direction(-60, 25),
+  SUN_HEIGHT = 2 * Math.sin(0.25 * 5 * RAD) ** 2,
+  HALF_SIDES = [2, 0.5];
 
 /// A point of the rectangle above the fibre, in angles, so that the integrand is flat along it.
 function rectangle(s, t) {
   const [p, q] = [s, t].map((x, axis) => (2 * x - 1) * Math.atan(HALF_SIDES[axis]));
-  const [x, z] = [Math.tan(p), Math.tan(q)], square = x * x + z * z + 1, length = Math.sqrt(square);
+  const [x, z] = [Math.tan(p), Math.tan(q)],
+    square = x * x + z * z + 1,
+    length = Math.sqrt(square);
   const range = 4 * Math.atan(HALF_SIDES[0]) * Math.atan(HALF_SIDES[1]);
-  return { dir: [x / length, 1 / length, z / length], solid: range * (x * x + 1) * (z * z + 1) / (square * length) };
+  return { dir: [x / length, 1 / length, z / length], solid: (range * (x * x + 1) * (z * z + 1)) / (square * length) };
 }
 
 /// A point of the sun.
 function sun(s, t) {
-  const fall = SUN_HEIGHT * s, phi = 2 * Math.PI * t, sine = Math.sqrt(fall * (2 - fall));
-  const [x, y, z] = SUN, side = normalized([-y, x, 0]), up = [y * side[2] - z * side[1], z * side[0] - x * side[2], x * side[1] - y * side[0]];
+  const fall = SUN_HEIGHT * s,
+    phi = 2 * Math.PI * t,
+    sine = Math.sqrt(fall * (2 - fall));
+  const [x, y, z] = SUN,
+    side = normalized([-y, x, 0]),
+    up = [y * side[2] - z * side[1], z * side[0] - x * side[2], x * side[1] - y * side[0]];
   const dir = [0, 1, 2].map(i => (1 - fall) * SUN[i] + sine * (Math.cos(phi) * side[i] + Math.sin(phi) * up[i]));
   return { dir, solid: 2 * Math.PI * SUN_HEIGHT };
 }
@@ -91,10 +105,13 @@ const LIGHTS = [
 /// Mean over the channels of S cos theta of every cell of a map, its integral, its peak, and the integral over every second cell.
 function measureMap(columns, into) {
   const [, , , r, g, b] = columns;
-  let total = 0, peak = 0, coarse = 0;
+  let total = 0,
+    peak = 0,
+    coarse = 0;
   for (let row = 0, at = 0; row < HEIGHT; row++) {
     const by = MAP.cos[row] / 3;
-    let sum = 0, every = 0;
+    let sum = 0,
+      every = 0;
     for (let column = 0; column < WIDTH; column++, at++) {
       const value = (r[at] + g[at] + b[at]) * by;
       into[at] = value;
@@ -110,20 +127,34 @@ function measureMap(columns, into) {
 
 /// L1 difference of two maps, relative to the first.
 function measureDifference(first, second, into) {
-  let total = 0, of = 0, coarse = 0, coarseOf = 0, peak = 0;
+  let total = 0,
+    of = 0,
+    coarse = 0,
+    coarseOf = 0,
+    peak = 0;
   for (let row = 0, at = 0; row < HEIGHT; row++) {
-    let sum = 0, norm = 0, every = 0, everyNorm = 0;
+    let sum = 0,
+      norm = 0,
+      every = 0,
+      everyNorm = 0;
     for (let column = 0; column < WIDTH; column++, at++) {
-      const difference = second[at] - first[at], size = Math.abs(difference);
+      const difference = second[at] - first[at],
+        size = Math.abs(difference);
       into[at] = difference;
       sum += size;
       norm += first[at];
       if (size > peak) peak = size;
-      if (column & 1) { every += size; everyNorm += first[at]; }
+      if (column & 1) {
+        every += size;
+        everyNorm += first[at];
+      }
     }
     total += sum * MAP.area[row];
     of += norm * MAP.area[row];
-    if (row & 1) { coarse += every * MAP.area[row]; coarseOf += everyNorm * MAP.area[row]; }
+    if (row & 1) {
+      coarse += every * MAP.area[row];
+      coarseOf += everyNorm * MAP.area[row];
+    }
   }
   const l1 = of > 0 ? total / of : NaN;
   return { l1, error: Math.abs(l1 - coarse / coarseOf), peak };
@@ -138,12 +169,15 @@ class Sums {
   }
   add(value, weight, density, sampler) {
     if (sampler === 0) this.mean += value * weight;
-    if (value > 0) this.squares[sampler] += value * value / density * weight;
+    if (value > 0) this.squares[sampler] += ((value * value) / density) * weight;
     this.masses[sampler] += density * weight;
   }
   /// V; over the whole sphere as the variance about the mean, so that errors of the grid in both moments cancel.
   v(isSphere) {
-    return Array.from(this.squares, (square, sampler) => square / this.mean ** 2 - 1 + (isSphere ? this.masses[sampler] - 1 : 0));
+    return Array.from(
+      this.squares,
+      (square, sampler) => square / this.mean ** 2 - 1 + (isSphere ? this.masses[sampler] - 1 : 0),
+    );
   }
 }
 
@@ -153,7 +187,7 @@ function measureVariance(slot, entries, isQuick) {
   const grids = isQuick ? [COARSE, new SphereGrid(64, 128)] : [FINE, COARSE];
   const [fine, coarse] = grids.map((grid, level) => [
     ...sphereVariance(slot, entries, grid),
-    ...LIGHTS.flatMap(light => light.patches ? [patchVariance(slot, entries, light.patches[level])] : []),
+    ...LIGHTS.flatMap(light => (light.patches ? [patchVariance(slot, entries, light.patches[level])] : [])),
   ]);
   return fine.map((row, light) => withErrors(row, coarse[light]));
 }
@@ -162,17 +196,25 @@ const withErrors = (fine, coarse) => fine.map((value, i) => ({ value, error: Mat
 
 /// V under the constant and the smooth light.
 function sphereVariance(slot, entries, grid) {
-  const columns = kernel.work, [x, y, z, r, g, b, pdf] = columns, { axis, mean, contrast } = SMOOTH;
+  const columns = kernel.work,
+    [x, y, z, r, g, b, pdf] = columns,
+    { axis, mean, contrast } = SMOOTH;
   const sums = [0, 1].map(() => new Sums(entries.length + 1));
   grid.write(columns);
   entries.forEach((entry, sampler) => {
     kernel.calls.eval(slot, entry.model, false, grid.count);
     for (let row = 0, at = 0; row < grid.height; row++) {
-      const by = grid.cos[row] / 3, area = grid.area[row];
+      const by = grid.cos[row] / 3,
+        area = grid.area[row];
       for (let column = 0; column < grid.width; column++, at++) {
-        const [constant, smooth] = sums, t = axis[0] * x[at] + axis[1] * y[at] + axis[2] * z[at];
+        const [constant, smooth] = sums,
+          t = axis[0] * x[at] + axis[1] * y[at] + axis[2] * z[at];
         const even = (r[at] + g[at] + b[at]) * by;
-        const lit = by * (r[at] * mean[0] * (1 + contrast[0] * t) + g[at] * mean[1] * (1 + contrast[1] * t) + b[at] * mean[2] * (1 + contrast[2] * t));
+        const lit =
+          by *
+          (r[at] * mean[0] * (1 + contrast[0] * t) +
+            g[at] * mean[1] * (1 + contrast[1] * t) +
+            b[at] * mean[2] * (1 + contrast[2] * t));
         if (sampler === 0) {
           constant.add(even, area, 0.25 / Math.PI, 0);
           smooth.add(lit, area, 0.25 / Math.PI, 0);
@@ -187,12 +229,13 @@ function sphereVariance(slot, entries, grid) {
 
 /// V under a light of constant radiance over a patch.
 function patchVariance(slot, entries, { columns, weight, count }) {
-  const [x, y, z, r, g, b, pdf] = kernel.work, sums = new Sums(entries.length + 1);
+  const [x, y, z, r, g, b, pdf] = kernel.work,
+    sums = new Sums(entries.length + 1);
   [x, y, z].forEach((column, axis) => column.set(columns[axis]));
   entries.forEach((entry, sampler) => {
     kernel.calls.eval(slot, entry.model, false, count);
     for (let at = 0; at < count; at++) {
-      const value = (r[at] + g[at] + b[at]) / 3 * Math.sqrt(Math.max(0, 1 - x[at] * x[at]));
+      const value = ((r[at] + g[at] + b[at]) / 3) * Math.sqrt(Math.max(0, 1 - x[at] * x[at]));
       if (sampler === 0) sums.add(value, weight[at], 0.25 / Math.PI, 0);
       sums.add(value, weight[at], pdf[at], sampler + 1);
     }
@@ -203,22 +246,40 @@ function patchVariance(slot, entries, { columns, weight, count }) {
 /// S cos theta, mean over the channels, along a line of directions; for each set of lobes.
 function profile(slot, entry, view, masks, directions) {
   const [x, y, z, r, g, b] = kernel.work;
-  directions.forEach(([u, v, w], at) => { x[at] = u; y[at] = v; z[at] = w; });
+  directions.forEach(([u, v, w], at) => {
+    x[at] = u;
+    y[at] = v;
+    z[at] = w;
+  });
   return masks.map(mask => {
     kernel.setView(slot, view, mask);
     kernel.calls.eval(slot, entry.model, false, directions.length);
-    return Float64Array.from(directions, ([u], at) => (r[at] + g[at] + b[at]) / 3 * Math.sqrt(Math.max(0, 1 - u * u)));
+    return Float64Array.from(
+      directions,
+      ([u], at) => ((r[at] + g[at] + b[at]) / 3) * Math.sqrt(Math.max(0, 1 - u * u)),
+    );
   });
 }
 
-/// Directional albedo, mean over the channels, at inclinations in degrees.
-function albedoCurve(slot, lobes, conserving, inclinations) {
-  inclinations.forEach((theta, at) => { kernel.work[0][at] = Math.sin(theta * RAD); });
-  kernel.calls.albedos(slot, conserving, inclinations.length);
-  return inclinations.map((_, at) => {
-    let sum = 0;
-    for (let lobe = 0; lobe < 4; lobe++)
-      if (lobes >> lobe & 1) for (let c = 0; c < 3; c++) sum += kernel.work[1 + 3 * lobe + c][at] / 3;
-    return sum;
+/// Directional albedo, mean over the channels, at inclinations in degrees: as it is, and as `Conserving` leaves it, with each channel
+/// divided by the albedo of all lobes where that is above 1; it leaves models alone that conserve energy by their parameters.
+function albedoCurves(slot, model, lobes, inclinations) {
+  inclinations.forEach((theta, at) => {
+    kernel.work[0][at] = Math.sin(theta * RAD);
   });
+  kernel.calls.albedos(slot, inclinations.length);
+  const plain = inclinations.map(() => 0),
+    conserving = inclinations.map(() => 0);
+  for (let at = 0; at < inclinations.length; at++)
+    for (let c = 0; c < 3; c++) {
+      let [all, shown] = [0, 0];
+      for (let lobe = 0; lobe < 4; lobe++) {
+        const albedo = kernel.work[1 + 3 * lobe + c][at];
+        all += albedo;
+        if ((lobes >> lobe) & 1) shown += albedo;
+      }
+      plain[at] += shown / 3;
+      conserving[at] += shown / (model.conserves ? 1 : Math.max(1, all)) / 3;
+    }
+  return [conserving, plain];
 }

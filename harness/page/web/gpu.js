@@ -7,26 +7,34 @@ class Gpu {
     if (!adapter) throw new Error('WebGPU found no adapter, so that the module shades');
     const gpu = new Gpu();
     gpu.device = await adapter.requestDevice();
-    gpu.device.lost.then(({ message }) => { tuft.gpu = null; tuft.isGpu = false; tellTuft(`WebGPU was lost: ${message}`); });
+    gpu.device.lost.then(({ message }) => {
+      tuft.gpu = null;
+      tuft.isGpu = false;
+      tellTuft(`WebGPU was lost: ${message}`);
+    });
     gpu.pipelines = {};
     gpu.slots = [null, null];
-    if (!await gpu.prepare()) throw new Error('there is no shader of a model beside the page');
+    if (!(await gpu.prepare())) throw new Error('there is no shader of a model beside the page');
     return gpu;
   }
 
   /// The pipeline of a model, compiled once.
   pipeline(model) {
-    return this.pipelines[model] ??= (async () => {
+    return (this.pipelines[model] ??= (async () => {
       const response = await fetch(`${model}.wgsl`);
       if (!response.ok) throw new Error(`there is no ${model}.wgsl beside the page`);
-      const source = await response.text(), name = source.match(/fn (hairis_\w+_eval_hit\w*)\(material: (\w+)/);
+      const source = await response.text(),
+        name = source.match(/fn (hairis_\w+_eval_hit\w*)\(material: (\w+)/);
       this.device.pushErrorScope('validation');
       const module = this.device.createShaderModule({ code: `${source}\n${shader(name[1], name[2])}` });
-      const pipeline = await this.device.createComputePipelineAsync({ layout: 'auto', compute: { module, entryPoint: 'main' } });
+      const pipeline = await this.device.createComputePipelineAsync({
+        layout: 'auto',
+        compute: { module, entryPoint: 'main' },
+      });
       const error = await this.device.popErrorScope();
       if (error) throw new Error(error.message);
       return pipeline;
-    })();
+    })());
   }
 
   /// Pipelines and constants of the state's materials.
@@ -35,25 +43,40 @@ class Gpu {
     const constants = [0, 1].map(slot => kernel.work[0].slice(0, kernel.calls.constants(slot)));
     const pipelines = await Promise.all(names.map(name => this.pipeline(name)));
     this.slots.forEach(slot => slot?.constants.destroy());
-    this.slots = pipelines.map((pipeline, slot) => ({ pipeline, constants: this.buffer(constants[slot], GPUBufferUsage.STORAGE) }));
+    this.slots = pipelines.map((pipeline, slot) => ({
+      pipeline,
+      constants: this.buffer(constants[slot], GPUBufferUsage.STORAGE),
+    }));
     return true;
   }
 
   buffer(data, usage) {
-    const buffer = this.device.createBuffer({ size: Math.max(16, data.byteLength + 15 & ~15), usage: usage | GPUBufferUsage.COPY_DST });
+    const buffer = this.device.createBuffer({
+      size: Math.max(16, (data.byteLength + 15) & ~15),
+      usage: usage | GPUBufferUsage.COPY_DST,
+    });
     this.device.queue.writeBuffer(buffer, 0, data);
     return buffer;
   }
 
   async shade(slot, { count, lights, seen, hits, wo }) {
-    const { device } = this, { pipeline, constants } = this.slots[slot], size = Math.max(16, 16 * count);
+    const { device } = this,
+      { pipeline, constants } = this.slots[slot],
+      size = Math.max(16, 16 * count);
     const scene = new Float32Array(4 + 8 * DIRECTIONS);
     scene.set([...wo, 0]);
-    lights.forEach(({ dir, radiance }, i) => scene.set([...dir, 0, ...radiance.map(x => x / DIRECTIONS), 0], 4 + 8 * i));
+    lights.forEach(({ dir, radiance }, i) =>
+      scene.set([...dir, 0, ...radiance.map(x => x / DIRECTIONS), 0], 4 + 8 * i),
+    );
     const inputs = [hits, seen, scene].map(data => this.buffer(data, GPUBufferUsage.STORAGE));
-    const out = device.createBuffer({ size, usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_SRC }), read = device.createBuffer({ size, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
-    const group = device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries: [...inputs, constants, out].map((buffer, binding) => ({ binding, resource: { buffer } })) });
-    const encoder = device.createCommandEncoder(), pass = encoder.beginComputePass();
+    const out = device.createBuffer({ size, usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_SRC }),
+      read = device.createBuffer({ size, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
+    const group = device.createBindGroup({
+      layout: pipeline.getBindGroupLayout(0),
+      entries: [...inputs, constants, out].map((buffer, binding) => ({ binding, resource: { buffer } })),
+    });
+    const encoder = device.createCommandEncoder(),
+      pass = encoder.beginComputePass();
     pass.setPipeline(pipeline);
     pass.setBindGroup(0, group);
     pass.dispatchWorkgroups(Math.ceil(count / 64));

@@ -1,7 +1,9 @@
 // The module of the kernels: its memory as arrays, and its calls.
 'use strict';
 
-const WIDTH = 512, HEIGHT = 256, RAD = Math.PI / 180;
+const WIDTH = 512,
+  HEIGHT = 256,
+  RAD = Math.PI / 180;
 let kernel;
 
 class Kernel {
@@ -13,7 +15,8 @@ class Kernel {
     this.artist = list.artist;
     this.column = list.column;
     const floats = (at, count) => new Float32Array(exports.memory.buffer, at, count);
-    const columns = (at, count) => Array.from({ length: count }, (_, i) => floats(at + 4 * i * this.column, this.column));
+    const columns = (at, count) =>
+      Array.from({ length: count }, (_, i) => floats(at + 4 * i * this.column, this.column));
     this.numbers = floats(exports.numbers(), 32);
     this.maps = [0, 1].map(slot => columns(exports.map(slot), 7));
     this.work = columns(exports.work(), 14);
@@ -24,7 +27,8 @@ class Kernel {
 
   static async load(address) {
     const response = await fetch(address);
-    if (!response.ok) throw new Error(`${address} must be beside the page, got ${response.status}; build the page again`);
+    if (!response.ok)
+      throw new Error(`${address} must be beside the page, got ${response.status}; build the page again`);
     const { instance } = await WebAssembly.instantiate(await response.arrayBuffer(), {});
     return new Kernel(instance.exports);
   }
@@ -33,7 +37,9 @@ class Kernel {
     return new TextDecoder().decode(new Uint8Array(this.calls.memory.buffer, this.calls.text(), length));
   }
 
-  model(name) { return this.models.find(model => model.name === name); }
+  model(name) {
+    return this.models.find(model => model.name === name);
+  }
 
   /// Entry of a model's list for a word of its choice.
   entry(material) {
@@ -44,14 +50,16 @@ class Kernel {
   /// Sets the material of a slot; a refusal as text, or nothing.
   setMaterial(slot, material) {
     const model = this.model(material.model);
-    let given = 0, at = 0;
+    let given = 0,
+      at = 0;
     if (material.artist && model.artist) {
       const refusal = this.fromArtist(material.artist);
       if (refusal) return refusal;
       given = 2 ** model.fields.length - 1;
     } else {
       model.fields.forEach((field, index) => {
-        const value = material.values[field.name], width = widthOf(field);
+        const value = material.values[field.name],
+          width = widthOf(field);
         if (value !== undefined) {
           given |= 1 << index;
           const numbers = field.kind === 'word' ? [field.words.indexOf(value)] : [value].flat();
@@ -93,7 +101,9 @@ class Kernel {
     this.calls.to_artist(slot);
     let at = 0;
     const take = () => +this.numbers[at++].toPrecision(6);
-    return Object.fromEntries(this.artist.map(({ name, kind }) => [name, kind === 'rgb' ? [take(), take(), take()] : take()]));
+    return Object.fromEntries(
+      this.artist.map(({ name, kind }) => [name, kind === 'rgb' ? [take(), take(), take()] : take()]),
+    );
   }
 
   setView(slot, view, lobes) {
@@ -102,7 +112,7 @@ class Kernel {
   }
 }
 
-const widthOf = field => field.kind === 'rgb' ? 3 : field.kind === 'numbers' ? field.words.length : 1;
+const widthOf = field => (field.kind === 'rgb' ? 3 : field.kind === 'numbers' ? field.words.length : 1);
 
 /// The direction towards the viewer at an inclination in degrees.
 const wo = theta => direction(theta, 0);

@@ -1,22 +1,14 @@
 // The page: draws what the state says, and listens.
 
-const maps = [0, 1].map(() => new Float32Array(WIDTH * HEIGHT)), differences = new Float32Array(WIDTH * HEIGHT);
+const maps = [0, 1].map(() => new Float32Array(WIDTH * HEIGHT)),
+  differences = new Float32Array(WIDTH * HEIGHT);
 const figures = { maps: [{}, {}], difference: {}, variance: [null, null], times: [] };
-let canvases, isScheduled = false, later = 0, drawn = [[], []], tallies = [];
+let canvases,
+  isScheduled = false,
+  later = 0,
+  drawn = [[], []],
+  tallies = [];
 const isReduced = matchMedia('(prefers-reduced-motion: reduce)');
-
-const title = name => name.replace(/(^|-)\w/g, letter => letter.toUpperCase());
-const titleOf = slot => title(state.materials[slot].model);
-const samplerOf = slot => kernel.entry(state.materials[slot]).word;
-const minus = text => text.replace('-', '−');
-const percent = (x, digits = 1) => minus(`${(100 * x).toFixed(digits)}%`);
-
-/// A figure with its error: digits that the error leaves.
-function withError(value, error) {
-  if (!Number.isFinite(value)) return '–';
-  const from = Math.max(error, Math.abs(value) * 5e-4, 1e-12), digits = Math.max(0, Math.min(6, 1 - Math.floor(Math.log10(from))));
-  return `${value.toFixed(digits)} ± ${Math.max(error, 10 ** -digits).toFixed(digits)}`;
-}
 
 /// Gives the module the state's materials; a refusal as text, or nothing. Otherwise the page is drawn again.
 function changed() {
@@ -35,10 +27,15 @@ function changed() {
 function schedule() {
   if (isScheduled) return;
   isScheduled = true;
-  requestAnimationFrame(() => { isScheduled = false; draw(); });
+  requestAnimationFrame(() => {
+    isScheduled = false;
+    draw();
+  });
 }
 
-function setView(slot) { kernel.setView(slot, state.view, state.lobes); }
+function setView(slot) {
+  kernel.setView(slot, state.view, state.lobes);
+}
 
 function draw() {
   const start = performance.now();
@@ -53,7 +50,10 @@ function draw() {
   describe();
   figures.variance = [null, null];
   clearTimeout(later);
-  later = setTimeout(() => { settle(true); later = setTimeout(settle, 100); }, 0);
+  later = setTimeout(() => {
+    settle(true);
+    later = setTimeout(settle, 100);
+  }, 0);
   restartTuft();
 }
 
@@ -80,17 +80,25 @@ function drawMap(slot) {
 
 /// Colours of the maps by the upper half of a number's bits.
 function colorTable(most) {
-  const isLog = state.scale === 'log', last = STEPS - 1, by = last / (isLog ? DECADES * Math.LN10 : most), shift = isLog ? last - Math.log(most) * by : 0;
-  return table(value => {
-    const at = isLog ? shift + Math.log(value) * by : value * by;
-    return VIRIDIS_STEPS[at > 0 ? at < last ? at | 0 : last : 0];
-  }, colorTable.entries, 32768);
+  const isLog = state.scale === 'log',
+    last = STEPS - 1,
+    by = last / (isLog ? DECADES * Math.LN10 : most),
+    shift = isLog ? last - Math.log(most) * by : 0;
+  return table(
+    value => {
+      const at = isLog ? shift + Math.log(value) * by : value * by;
+      return VIRIDIS_STEPS[at > 0 ? (at < last ? at | 0 : last) : 0];
+    },
+    colorTable.entries,
+    32768,
+  );
 }
 colorTable.entries = new Uint32Array(65536);
 const peakOf = () => Math.max(figures.maps[0].peak, figures.maps[1].peak, 1e-12);
 
 function drawMaps() {
-  const peak = peakOf(), { show, scale } = state;
+  const peak = peakOf(),
+    { show, scale } = state;
   if (show === 'color') {
     const tone = toneOf(peak);
     [0, 1].forEach(slot => canvases[slot].paintColor(kernel.maps[slot], tone));
@@ -100,138 +108,147 @@ function drawMaps() {
     const most = show === 'pdf' ? Math.max(...densities.map(map => map.reduce((a, b) => Math.max(a, b), 1e-12))) : peak;
     const colorsOf = colorTable(most);
     shown.forEach((map, slot) => canvases[slot].paint(map, colorsOf));
-    const ticks = scale === 'log'
-      ? Array.from({ length: DECADES + 2 }, (_, i) => 10 ** (Math.floor(Math.log10(most)) - i)).map(value => ({ at: position(value, most, 'log'), text: tidy(value) })).filter(({ at }) => at >= 0).reverse()
-      : Array.from({ length: 6 }, (_, i) => ({ at: i / 5, text: tidy(most * i / 5) }));
+    const ticks =
+      scale === 'log'
+        ? Array.from({ length: DECADES + 2 }, (_, i) => 10 ** (Math.floor(Math.log10(most)) - i))
+            .map(value => ({ at: position(value, most, 'log'), text: tidy(value) }))
+            .filter(({ at }) => at >= 0)
+            .reverse()
+        : Array.from({ length: 6 }, (_, i) => ({ at: i / 5, text: tidy((most * i) / 5) }));
     ticks[ticks.length - 1].text += show === 'pdf' ? ' per sr, density' : ' per sr, S cos θ';
     drawScale($('scale'), t => onScale(VIRIDIS, t), ticks);
   }
   $('scale').style.visibility = show === 'color' ? 'hidden' : '';
   const most = Math.max(figures.difference.peak, 1e-12);
-  canvases[2].paint(differences, table(value => DIVERGING_STEPS[Math.max(0, Math.min(STEPS - 1, Math.round((signedPosition(value, most) + 1) / 2 * (STEPS - 1))))]));
-  drawScale($('signed-scale'), t => onScale(DIVERGING, t), [-1, -0.1, 0, 0.1, 1].map(x => ({ at: (signedPosition(x, 1) + 1) / 2, text: minus(tidy(x * most)) })));
+  canvases[2].paint(
+    differences,
+    table(
+      value =>
+        DIVERGING_STEPS[
+          Math.max(0, Math.min(STEPS - 1, Math.round(((signedPosition(value, most) + 1) / 2) * (STEPS - 1))))
+        ],
+    ),
+  );
+  drawScale(
+    $('signed-scale'),
+    t => onScale(DIVERGING, t),
+    [-1, -0.1, 0, 0.1, 1].map(x => ({ at: (signedPosition(x, 1) + 1) / 2, text: minus(tidy(x * most)) })),
+  );
   canvases.forEach(canvas => canvas.mark(state.cut, state.view.theta));
 }
 
-/// Tables from radiance to bytes of sRGB, one per row for its cosine, in 32 steps.
+/// Tables from radiance to bytes of sRGB, one per row for its cosine, in 32 steps; kept as long as the peak stays within a power of 2.
 function toneOf(peak) {
-  const by = 8 / peak, steps = Array.from({ length: 33 }, (_, i) => {
-    const bytes = Uint8Array.from({ length: STEPS }, (_, at) => Math.round(255 * toSrgb(at / (STEPS - 1))));
-    return table(value => {
-      const x = value * (i / 32) * by;
-      return bytes[Math.min(STEPS - 1, x / (1 + x) * (STEPS - 1) | 0)];
-    }, new Uint8Array(65536), 32640);
-  });
-  return { rows: Array.from(MAP.cos, cos => steps[Math.round(32 * cos)]) };
+  const power = Math.ceil(Math.log2(peak));
+  if (toneOf.power === power) return toneOf.tone;
+  const by = 10 / 2 ** power,
+    steps = Array.from({ length: 33 }, (_, i) => {
+      const bytes = Uint8Array.from({ length: STEPS }, (_, at) => Math.round(255 * toSrgb(at / (STEPS - 1))));
+      return table(
+        value => {
+          const x = value * (i / 32) * by;
+          return bytes[Math.min(STEPS - 1, ((x / (1 + x)) * (STEPS - 1)) | 0)];
+        },
+        new Uint8Array(65536),
+        32640,
+      );
+    });
+  toneOf.power = power;
+  return (toneOf.tone = { rows: Array.from(MAP.cos, cos => steps[Math.round(32 * cos)]) });
 }
 
-const ALONG = Array.from({ length: 721 }, (_, i) => -90 + i / 4), AROUND = Array.from({ length: 721 }, (_, i) => -180 + i / 2);
-const DASHES = [[5, 3], [2, 2], [9, 3, 2, 3], [1, 3]];
+const ALONG = Array.from({ length: 721 }, (_, i) => -90 + i / 4),
+  AROUND = Array.from({ length: 721 }, (_, i) => -180 + i / 2);
+const DASHES = [
+  [5, 3],
+  [2, 2],
+  [9, 3, 2, 3],
+  [1, 3],
+];
 
 function drawPlots() {
   const lines = [[], []];
   for (const slot of [0, 1]) {
-    const model = kernel.model(state.materials[slot].model), entry = kernel.entry(state.materials[slot]);
-    const lobes = model.lobes.map((_, lobe) => lobe).filter(lobe => state.lobes >> lobe & 1);
+    const model = kernel.model(state.materials[slot].model),
+      entry = kernel.entry(state.materials[slot]);
+    const lobes = model.lobes.map((_, lobe) => lobe).filter(lobe => (state.lobes >> lobe) & 1);
     const masks = [state.lobes, ...(lobes.length > 1 ? lobes.map(lobe => 1 << lobe) : [])];
-    [ALONG.map(theta => direction(theta, state.cut.phi)), AROUND.map(phi => direction(state.cut.theta, phi))].forEach((directions, which) =>
-      profile(slot, entry, state.view, masks, directions).forEach((y, place) => lines[which].push({
-        x: which ? AROUND : ALONG, y, color: colors.slots[slot], dash: place ? DASHES[lobes[place - 1]] : [], weight: place ? 1 : 2,
-      })));
+    [ALONG.map(theta => direction(theta, state.cut.phi)), AROUND.map(phi => direction(state.cut.theta, phi))].forEach(
+      (directions, which) =>
+        profile(slot, entry, state.view, masks, directions).forEach((y, place) =>
+          lines[which].push({
+            x: which ? AROUND : ALONG,
+            y,
+            color: colors.slots[slot],
+            dash: place ? DASHES[lobes[place - 1]] : [],
+            weight: place ? 1 : 2,
+          }),
+        ),
+    );
     setView(slot);
   }
   ['along', 'around'].forEach((id, which) => {
-    const peaks = lines[which].filter(({ weight }) => weight === 2).map(({ x, y }) => { const top = y.indexOf(Math.max(...y)); return `${tidy(y[top])} per steradian at ${x[top]} degrees`; });
-    $(id).setAttribute('aria-label', `S cos theta ${id} the fibre: ${titleOf(0)} peaks with ${peaks[0]}, ${titleOf(1)} with ${peaks[1]}`);
+    const peaks = lines[which]
+      .filter(({ weight }) => weight === 2)
+      .map(({ x, y }) => {
+        const top = y.indexOf(Math.max(...y));
+        return `${tidy(y[top])} per steradian at ${x[top]} degrees`;
+      });
+    $(id).setAttribute(
+      'aria-label',
+      `S cos theta ${id} the fibre: ${titleOf(0)} peaks with ${peaks[0]}, ${titleOf(1)} with ${peaks[1]}`,
+    );
   });
-  const log = state.scale === 'log', order = lines => [...lines].sort((a, b) => a.weight - b.weight);
-  plot($('along'), { lines: order(lines[0]), range: [-90, 90], ticks: 30, label: 'θᵢ', unit: 'S cos θ, per sr', log, marker: state.cut.theta });
-  plot($('around'), { lines: order(lines[1]), range: [-180, 180], ticks: $('around').clientWidth < 420 ? 90 : 45, label: 'φᵢ', unit: 'S cos θ, per sr', log, marker: state.cut.phi });
+  const log = state.scale === 'log',
+    order = lines => [...lines].sort((a, b) => a.weight - b.weight);
+  plot($('along'), {
+    lines: order(lines[0]),
+    range: [-90, 90],
+    ticks: 30,
+    label: 'θᵢ',
+    unit: 'S cos θ, per sr',
+    log,
+    marker: state.cut.theta,
+  });
+  plot($('around'), {
+    lines: order(lines[1]),
+    range: [-180, 180],
+    ticks: $('around').clientWidth < 420 ? 90 : 45,
+    label: 'φᵢ',
+    unit: 'S cos θ, per sr',
+    log,
+    marker: state.cut.phi,
+  });
 }
 
 function drawAlbedo() {
-  const inclinations = Array.from({ length: 59 }, (_, i) => -87 + 3 * i), lines = [];
+  const inclinations = Array.from({ length: 59 }, (_, i) => -87 + 3 * i),
+    lines = [];
   for (const slot of [0, 1])
-    for (const conserving of [true, false])
-      lines.push({ x: inclinations, y: albedoCurve(slot, state.lobes, conserving, inclinations), color: colors.slots[slot], dash: conserving ? [5, 3] : [], weight: conserving ? 1.5 : 2 });
+    albedoCurves(slot, kernel.model(state.materials[slot].model), state.lobes, inclinations).forEach((y, place) =>
+      lines.push({
+        x: inclinations,
+        y,
+        color: colors.slots[slot],
+        dash: place ? [] : [5, 3],
+        weight: place ? 2 : 1.5,
+      }),
+    );
   figures.albedo = lines;
-  $('albedo').setAttribute('aria-label', `Albedo of ${titleOf(0)} from ${tidy(Math.min(...lines[1].y))} to ${tidy(Math.max(...lines[1].y))}, of ${titleOf(1)} from ${tidy(Math.min(...lines[3].y))} to ${tidy(Math.max(...lines[3].y))}`);
-  plot($('albedo'), { lines, range: [-90, 90], ticks: 30, label: 'θₒ', unit: 'albedo, mean of RGB', marker: state.view.theta, top: Math.max(1.05, ...lines.flatMap(({ y }) => y)), guides: [1] });
-}
-
-/// Captions and the readout.
-function describe() {
-  for (const slot of [0, 1]) {
-    document.querySelectorAll(`[data-name="${slot}"]`).forEach(element => { element.textContent = `${'AB'[slot]}: ${titleOf(slot)}`; });
-    const { total, error } = figures.maps[slot], caption = document.querySelector(`[data-total="${slot}"]`);
-    caption.textContent = `albedo ${withError(total, error)}`;
-    canvases[slot].context.canvas.setAttribute('aria-label', `S cos theta of ${titleOf(slot)} over the sphere; arrow keys move the cut`);
-  }
-  canvases[2].context.canvas.setAttribute('aria-label', 'Difference of both maps; arrow keys move the cut');
-  $('difference').textContent = `B − A, L1 ${percent(figures.difference.l1)}`;
-  const angle = x => minus(`${+x.toFixed(1)}°`);
-  $('along-note').textContent = `φᵢ ${angle(state.cut.phi)}`;
-  $('around-note').textContent = `θᵢ ${angle(state.cut.theta)}`;
-  figures.readout = [0, 1].map(slot => {
-    direction(state.cut.theta, state.cut.phi).forEach((x, axis) => { kernel.work[axis][0] = x; });
-    kernel.calls.eval(slot, kernel.entry(state.materials[slot]).model, false, 1);
-    const [s, pdf] = [[3, 4, 5].map(column => kernel.work[column][0]), kernel.work[6][0]];
-    return { s, pdf };
+  $('albedo').setAttribute(
+    'aria-label',
+    `Albedo of ${titleOf(0)} from ${tidy(Math.min(...lines[1].y))} to ${tidy(Math.max(...lines[1].y))}, of ${titleOf(1)} from ${tidy(Math.min(...lines[3].y))} to ${tidy(Math.max(...lines[3].y))}`,
+  );
+  plot($('albedo'), {
+    lines,
+    range: [-90, 90],
+    ticks: 30,
+    label: 'θₒ',
+    unit: 'albedo, mean of RGB',
+    marker: state.view.theta,
+    top: Math.max(1.05, ...lines.flatMap(({ y }) => y)),
+    guides: [1],
   });
-  const numbers = ({ s, pdf }) => `S ${s.map(x => x.toPrecision(4)).join(' ')}, density ${pdf.toPrecision(4)}`;
-  $('readout').textContent = `At θᵢ ${angle(state.cut.theta)}, φᵢ ${angle(state.cut.phi)} — A: ${numbers(figures.readout[0])}; B: ${numbers(figures.readout[1])}. The ring marks the viewer, the cross the cut.`;
-  const lobes = [0, 1].map(slot => kernel.model(state.materials[slot].model).lobes), names = lobes[0].length >= lobes[1].length ? lobes[0] : lobes[1];
-  fill($('key'), make('b', { class: 'chip slot-a' }, `A: ${titleOf(0)}`), make('b', { class: 'chip slot-b' }, `B: ${titleOf(1)}`), make('span', {}, 'Each lobe alone:'),
-    ...names.map((name, lobe) => state.lobes >> lobe & 1 ? make('span', {}, dashSample(DASHES[lobe]), ` ${name}`) : null));
-}
-
-function dashSample(dash) {
-  const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg'), stroke = document.createElementNS('http://www.w3.org/2000/svg', 'path');
-  for (const [name, value] of Object.entries({ width: 30, height: 8, 'aria-hidden': true })) svg.setAttribute(name, value);
-  for (const [name, value] of Object.entries({ d: 'M0 4H30', stroke: 'currentColor', 'stroke-width': 1.5, 'stroke-dasharray': dash.join(' ') })) stroke.setAttribute(name, value);
-  svg.append(stroke);
-  return svg;
-}
-
-function drawVariance() {
-  const rows = [make('tr', {}, make('th', {}, 'sampler'), ...LIGHTS.map(({ name }) => make('th', { style: 'text-align: right', scope: 'col' }, name)))];
-  for (const slot of [0, 1]) {
-    const { entries, lights } = figures.variance[slot], names = ['uniform', ...entries.map(entry => entry.word || 'its sampler')];
-    rows.push(make('tr', { class: `group ${slot ? 'slot-b' : 'slot-a'}` }, make('th', { colspan: 1 + LIGHTS.length }, make('span', { class: 'chip' }, `${'AB'[slot]}: ${titleOf(slot)}`))));
-    names.forEach((name, sampler) => rows.push(make('tr', {}, make('th', { scope: 'row' }, name), ...lights.map((row, light) => {
-      const best = Math.min(...row.map(({ value }) => value));
-      return make('td', { class: row[sampler].value === best ? 'best' : null, 'data-v': `${slot} ${name} ${LIGHTS[light].name}` }, withError(row[sampler].value, row[sampler].error));
-    }))));
-  }
-  fill($('variance'), ...rows);
-}
-
-/// The figure of the pair, and a sentence that follows from the figures.
-function answer() {
-  const { l1, error } = figures.difference, [a, b] = [titleOf(0), titleOf(1)], [of, other] = figures.maps;
-  const view = minus(`${+state.view.theta.toFixed(1)}°`), ratio = other.total / of.total - 1;
-  const sentences = [];
-  const light = Math.abs(ratio) < 5e-4 ? 'as much light' : `${percent(Math.abs(ratio))} ${ratio > 0 ? 'more' : 'less'} light`;
-  sentences.push(l1 < 5e-4
-    ? `Seen from ${view}, ${b} scatters as ${a} does.`
-    : `Seen from ${view}, ${b} differs from ${a} by ${percent(l1)} of the light that ${a} reflects, and returns ${light}.`);
-  const v = (slot, word) => {
-    const { entries, lights } = figures.variance[slot], place = entries.findIndex(entry => entry.word === word) + 1;
-    return place ? lights.map(row => row[place].value) : null;
-  };
-  const [published, tried, matched] = [v(0, 'published'), v(1, 'published'), v(0, 'matched')];
-  let verdict = '';
-  if (published && tried && matched && state.materials[0].model !== state.materials[1].model) {
-    const saved = tried.map((value, place) => 1 - value / published[place]), best = saved.indexOf(Math.max(...saved));
-    const rival = 1 - matched[best] / published[best], share = x => `${percent(Math.abs(x))} ${x >= 0 ? 'fewer' : 'more'}`;
-    sentences.push(`With the published sampler ${b} needs ${share(saved[best])} samples under the ${LIGHTS[best].name}${LIGHTS[best].name.endsWith('light') ? '' : ' light'}, where it gains most; the matched sampler of ${a} needs ${share(rival)} and keeps the look.`);
-    verdict = saved[best] <= 0.1 ? 'Not here.' : rival >= saved[best] ? 'Not with a better sampler at hand.' : 'For its samples, here it is.';
-    sentences.unshift(`Is ${b} worth it in place of ${a}? ${verdict}`);
-  } else {
-    const [first, second] = [0, 1].map(slot => figures.variance[slot].lights[0][figures.variance[slot].entries.indexOf(kernel.entry(state.materials[slot])) + 1].value);
-    sentences.push(`Under the constant light V of one sample is ${first.toPrecision(3)} for ${a} and ${second.toPrecision(3)} for ${b}.`);
-  }
-  fill($('answer'), make('div', { class: 'figure', id: 'l1' }, percent(l1), make('small', {}, ` ± ${percent(Math.max(error, 5e-5), 2)} L1`)), make('p', { id: 'sentence' }, sentences.join(' ')));
 }
 
 const newTally = () => ({ count: 0, sum: 0, square: 0 });
@@ -239,12 +256,14 @@ const newTally = () => ({ count: 0, sum: 0, square: 0 });
 /// Draws some samples, and drops them on the maps.
 function fall(count) {
   for (const slot of [0, 1]) {
-    const [s, t, u, x, y, z, wr, wg, wb, , lobe] = kernel.work, dots = [];
+    const [s, t, u, x, y, z, wr, wg, wb, , lobe] = kernel.work,
+      dots = [];
     for (let i = 0; i < count; i++) for (const column of [s, t, u]) column[i] = Math.min(Math.random(), 1 - 2 ** -24);
     setView(slot);
     kernel.calls.sample(slot, kernel.entry(state.materials[slot]).model, count);
     for (let i = 0; i < count; i++) {
-      const weight = (wr[i] + wg[i] + wb[i]) / 3, tally = tallies[slot];
+      const weight = (wr[i] + wg[i] + wb[i]) / 3,
+        tally = tallies[slot];
       tally.count++;
       tally.sum += weight;
       tally.square += weight * weight;
@@ -252,9 +271,13 @@ function fall(count) {
     }
     canvases[slot].dots(dots);
     drawn[slot].push(...dots);
-    const { count: n, sum, square } = tallies[slot], mean = sum / n;
-    figures.sampled = Object.assign(figures.sampled ?? {}, { [slot]: { mean, error: Math.sqrt(Math.max(0, square / n - mean * mean) / n), n } });
-    document.querySelector(`[data-total="${slot}"]`).textContent = `albedo ${withError(figures.maps[slot].total, figures.maps[slot].error)}; ${n} samples ${withError(mean, figures.sampled[slot].error)}`;
+    const { count: n, sum, square } = tallies[slot],
+      mean = sum / n;
+    figures.sampled = Object.assign(figures.sampled ?? {}, {
+      [slot]: { mean, error: Math.sqrt(Math.max(0, square / n - mean * mean) / n), n },
+    });
+    document.querySelector(`[data-total="${slot}"]`).textContent =
+      `albedo ${withError(figures.maps[slot].total, figures.maps[slot].error)}; ${n} samples ${withError(mean, figures.sampled[slot].error)}`;
   }
 }
 
@@ -263,42 +286,6 @@ function animate() {
   if (state.samples && tallies[0]?.count < MOST_SAMPLES) fall(isReduced.matches ? MOST_SAMPLES : 64);
   stepTuft();
   requestAnimationFrame(animate);
-}
-
-/// JSON of both materials, and constants for shaders.
-function texts() {
-  const box = $('texts');
-  if (!$('numbers').open) return;
-  fill(box, ...[0, 1].map(slot => {
-    const area = make('textarea', { id: `json-${slot}`, spellcheck: 'false', 'aria-label': `Request of hairis eval, material ${'AB'[slot]}` });
-    area.value = JSON.stringify(request(slot));
-    area.addEventListener('change', () => {
-      const refusal = takeRequest(area.value, slot);
-      if (refusal) { changed(); refuse(refusal); return; }
-      build(); changed(); commit();
-    });
-    kernel.setMaterial(slot, materialOf(slot));
-    const count = kernel.calls.constants(slot), constants = Array.from(kernel.work[0].subarray(0, count), shortest);
-    const shader = make('textarea', { id: `constants-${slot}`, readonly: true, 'aria-label': `Constants for a shader, material ${'AB'[slot]}` });
-    shader.value = `[${constants.join(', ')}]`;
-    return make('div', { class: slot ? 'slot-b' : 'slot-a' },
-      make('p', { class: 'title' }, make('span', { class: 'chip' }, `${'AB'[slot]}: ${titleOf(slot)}`)),
-      make('p', { class: 'note' }, 'A line for `hairis eval`; an edited line becomes the material.'), area,
-      make('div', { class: 'bar' }, copyButton('Copy JSON', () => area.value), copyButton('Copy numbers', () => shader.value)),
-      make('p', { class: 'note' }, `The ${count} constants of the material, as the functions of \`hairis shader\` take them.`), shader);
-  }));
-}
-
-function copyButton(text, of) {
-  const button = make('button', { type: 'button' }, text);
-  button.addEventListener('click', () => copy(of(), button));
-  return button;
-}
-
-async function copy(text, button) {
-  const before = button.textContent;
-  try { await navigator.clipboard.writeText(text); button.textContent = 'Copied'; } catch { notice(`The browser refused the clipboard; the text is ${text}`); }
-  setTimeout(() => { button.textContent = before; }, 1200);
 }
 
 /// Takes a state that came from elsewhere: a link, or a step back.
@@ -315,10 +302,20 @@ function movable(element, drag, key) {
     element.setPointerCapture(event.pointerId);
     let last = event;
     drag(event, event, element.getBoundingClientRect());
-    const moved = next => { drag(next, last, element.getBoundingClientRect()); last = next; };
+    const moved = next => {
+      drag(next, last, element.getBoundingClientRect());
+      last = next;
+    };
     element.addEventListener('pointermove', moved);
     for (const end of ['pointerup', 'pointercancel'])
-      element.addEventListener(end, () => { element.removeEventListener('pointermove', moved); commit(); }, { once: true });
+      element.addEventListener(
+        end,
+        () => {
+          element.removeEventListener('pointermove', moved);
+          commit();
+        },
+        { once: true },
+      );
   });
   element.addEventListener('keydown', event => {
     const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
@@ -330,34 +327,71 @@ function movable(element, drag, key) {
 }
 
 function listen() {
-  canvases.forEach(({ context: { canvas } }) => movable(canvas, (event, _, box) => {
-    state.cut.phi = +(360 * Math.max(0, Math.min(1, (event.clientX - box.left) / box.width)) - 180).toFixed(1);
-    state.cut.theta = +(90 - 180 * Math.max(0, Math.min(1, (event.clientY - box.top) / box.height))).toFixed(1);
-    build(); changed();
-  }, ([x, y]) => {
-    state.cut.phi = Math.max(-180, Math.min(180, state.cut.phi + x));
-    state.cut.theta = Math.max(-90, Math.min(90, state.cut.theta + y));
-    build(); changed();
-  }));
+  canvases.forEach(({ context: { canvas } }) =>
+    movable(
+      canvas,
+      (event, _, box) => {
+        state.cut.phi = +(360 * Math.max(0, Math.min(1, (event.clientX - box.left) / box.width)) - 180).toFixed(1);
+        state.cut.theta = +(90 - 180 * Math.max(0, Math.min(1, (event.clientY - box.top) / box.height))).toFixed(1);
+        build();
+        changed();
+      },
+      ([x, y]) => {
+        state.cut.phi = Math.max(-180, Math.min(180, state.cut.phi + x));
+        state.cut.theta = Math.max(-90, Math.min(90, state.cut.theta + y));
+        build();
+        changed();
+      },
+    ),
+  );
   const turn = (x, y) => {
     state.turn = [state.turn[0] + x, Math.max(-1.5, Math.min(1.5, state.turn[1] + y))];
     drawSurfaces($('surface'), maps, peakOf(), state.turn);
   };
-  movable($('surface'), (event, last) => turn((event.clientX - last.clientX) * 0.01, (event.clientY - last.clientY) * 0.01), ([x, y]) => turn(x * 0.1, y * 0.1));
+  movable(
+    $('surface'),
+    (event, last) => turn((event.clientX - last.clientX) * 0.01, (event.clientY - last.clientY) * 0.01),
+    ([x, y]) => turn(x * 0.1, y * 0.1),
+  );
   $('undo').addEventListener('click', () => move(past, future) && restore());
   $('redo').addEventListener('click', () => move(future, past) && restore());
-  $('reset').addEventListener('click', () => { restore(initialState()); commit(); });
-  $('copy-link').addEventListener('click', () => { commit(); copy(location.href, $('copy-link')); });
+  $('reset').addEventListener('click', () => {
+    restore(initialState());
+    commit();
+  });
+  $('copy-link').addEventListener('click', () => {
+    commit();
+    copy(location.href, $('copy-link'));
+  });
   $('numbers').addEventListener('toggle', texts);
   addEventListener('keydown', event => {
-    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== 'z' || event.target.matches('textarea, input[type=number]')) return;
+    if (
+      !(event.ctrlKey || event.metaKey) ||
+      event.key.toLowerCase() !== 'z' ||
+      event.target.matches('textarea, input[type=number]')
+    )
+      return;
     event.preventDefault();
     $(event.shiftKey ? 'redo' : 'undo').click();
   });
-  addEventListener('hashchange', () => { const found = readLink(location.hash); restore(found.state); notice(found.refusal); commit(); });
+  addEventListener('hashchange', () => {
+    const found = readLink(location.hash);
+    restore(found.state);
+    notice(found.refusal);
+    commit();
+  });
   let width = innerWidth;
-  addEventListener('resize', () => { if (innerWidth !== width) { width = innerWidth; schedule(); } });
-  for (const query of ['(prefers-color-scheme: dark)', '(prefers-contrast: more)']) matchMedia(query).addEventListener('change', () => { readColors(); schedule(); });
+  addEventListener('resize', () => {
+    if (innerWidth !== width) {
+      width = innerWidth;
+      schedule();
+    }
+  });
+  for (const query of ['(prefers-color-scheme: dark)', '(prefers-contrast: more)'])
+    matchMedia(query).addEventListener('change', () => {
+      readColors();
+      schedule();
+    });
 }
 
 /// For the console: shows a material as A, from a view, with a cut.
@@ -377,8 +411,22 @@ function timeMap(slot) {
 
 function frames() {
   for (const frame of document.querySelectorAll('.frame')) {
-    for (const phi of [-180, -90, 0, 90, 180]) frame.append(make('i', { style: `top: calc(100% + 4px); left: ${(phi / 360 + 0.5) * 100}%; transform: translateX(-50%)` }, minus(`${phi}°`)));
-    for (const theta of [90, 45, 0, -45, -90]) frame.append(make('i', { style: `right: calc(100% + 4px); top: ${(0.5 - theta / 180) * 100}%; transform: translateY(-50%)` }, minus(`${theta}°`)));
+    for (const phi of [-180, -90, 0, 90, 180])
+      frame.append(
+        make(
+          'i',
+          { style: `top: calc(100% + 4px); left: ${(phi / 360 + 0.5) * 100}%; transform: translateX(-50%)` },
+          minus(`${phi}°`),
+        ),
+      );
+    for (const theta of [90, 45, 0, -45, -90])
+      frame.append(
+        make(
+          'i',
+          { style: `right: calc(100% + 4px); top: ${(0.5 - theta / 180) * 100}%; transform: translateY(-50%)` },
+          minus(`${theta}°`),
+        ),
+      );
   }
 }
 
@@ -386,7 +434,9 @@ async function start() {
   try {
     kernel = await Kernel.load('hairis.wasm');
   } catch (error) {
-    refuse(`The module did not start: ${error.message}. The page needs WebAssembly with SIMD, as browsers have it since 2023.`);
+    refuse(
+      `The module did not start: ${error.message}. The page needs WebAssembly with SIMD, as browsers have it since 2023.`,
+    );
     return;
   }
   MAP.write(kernel.maps[0]);
@@ -403,8 +453,19 @@ async function start() {
   past = [JSON.stringify(state)];
   listen();
   requestAnimationFrame(animate);
-  globalThis.hairis = { kernel, figures, request, show, timeMap, tuft, get state() { return state; } };
-  $('about').textContent = 'θ is the inclination to the normal plane of the fibre, φ the azimuth around it; the viewer is at φ 0°. Angles, lights and figures are those of `hairis eval` and `hairis compare`. Nothing is loaded from elsewhere, and nothing leaves this page.';
+  globalThis.hairis = {
+    kernel,
+    figures,
+    request,
+    show,
+    timeMap,
+    tuft,
+    get state() {
+      return state;
+    },
+  };
+  $('about').textContent =
+    'θ is the inclination to the normal plane of the fibre, φ the azimuth around it; the viewer is at φ 0°. Angles, lights and figures are those of the commands hairis eval and hairis compare. Nothing is loaded from elsewhere, and nothing leaves this page.';
 }
 
 start();

@@ -1,13 +1,25 @@
 // What the page shows: one object, which a link restores and undo steps through.
 
-let state, past = [], future = [];
+let state,
+  past = [],
+  future = [];
 
 /// The first view: the Gaussian model beside the all-Cauchy one, on the material that the project's figures are of.
 function initialState() {
   const [a, b] = [kernel.models[0], kernel.models[1]].map(model => newMaterial(model));
   return {
-    materials: [a, b], linked: true, tab: 0, lobes: 15, show: 'value', scale: 'log', samples: false,
-    view: { theta: 45, h: 0.3 }, cut: { theta: -45, phi: 0 }, turn: [-0.6, 0.35], light: { turn: 0, exposure: 0 }, camera: [0.5, 0.15],
+    materials: [a, b],
+    linked: true,
+    tab: 0,
+    lobes: 15,
+    show: 'value',
+    scale: 'log',
+    samples: false,
+    view: { theta: 45, h: 0.3 },
+    cut: { theta: -45, phi: 0 },
+    turn: [-0.6, 0.35],
+    light: { turn: 0, exposure: 0 },
+    camera: [0.5, 0.15],
   };
 }
 
@@ -64,13 +76,35 @@ function readLink(hash) {
       const refusal = checkMaterial(material) || kernel.setMaterial(slot, material);
       if (refusal) throw new Error(refusal);
     });
-    for (const [name, least, most] of [['theta', -90, 90], ['h', -1, 1]])
-      if (!(found.view?.[name] >= least && found.view[name] <= most)) throw new Error(`${name} must be in [${least}, ${most}], got ${found.view?.[name]}`);
-    for (const name of ['theta', 'phi']) if (!Number.isFinite(found.cut?.[name])) throw new Error(`cut.${name} must be a number, got ${found.cut?.[name]}`);
+    const { materials, ...rest } = initialState();
+    for (const [name, like] of Object.entries(rest))
+      if (!isLike(found[name], like))
+        throw new Error(`${name} must be like ${JSON.stringify(like)}, got ${JSON.stringify(found[name])}`);
+    for (const [name, value, most] of [
+      ['view.theta', found.view.theta, 90],
+      ['view.h', found.view.h, 1],
+      ['cut.theta', found.cut.theta, 90],
+      ['cut.phi', found.cut.phi, 180],
+    ])
+      if (!(Math.abs(value) <= most)) throw new Error(`${name} must be in [-${most}, ${most}], got ${value}`);
     return { state: found };
   } catch (error) {
-    return { state: initialState(), refusal: `The link was not read: ${error.message}. The page shows its first view.` };
+    return {
+      state: initialState(),
+      refusal: `The link was not read: ${error.message}. The page shows its first view.`,
+    };
   }
+}
+
+/// Whether a value has the shape of another: the same type, and the same entries.
+function isLike(value, like) {
+  if (typeof like !== 'object')
+    return typeof value === typeof like && (typeof like !== 'number' || Number.isFinite(value));
+  return (
+    typeof value === 'object' &&
+    value !== null &&
+    Object.entries(like).every(([name, entry]) => isLike(value[name], entry))
+  );
 }
 
 /// Checks the shape of values; a refusal as text, or nothing.
@@ -78,19 +112,27 @@ function checkMaterial({ model, values, artist }) {
   const { fields } = kernel.model(model);
   if (artist) {
     for (const { name, kind } of kernel.artist)
-      if ([artist[name]].flat().length !== (kind === 'rgb' ? 3 : 1) || ![artist[name]].flat().every(Number.isFinite)) return `${name} must be ${kind === 'rgb' ? 'three numbers' : 'a number'}, got ${JSON.stringify(artist[name])}`;
+      if ([artist[name]].flat().length !== (kind === 'rgb' ? 3 : 1) || ![artist[name]].flat().every(Number.isFinite))
+        return `${name} must be ${kind === 'rgb' ? 'three numbers' : 'a number'}, got ${JSON.stringify(artist[name])}`;
     return '';
   }
   for (const name of Object.keys(values ?? {}))
-    if (!fields.some(field => field.name === name)) return `${name}: unknown field, expected one of ${fields.map(field => field.name).join(', ')}`;
+    if (!fields.some(field => field.name === name))
+      return `${name}: unknown field, expected one of ${fields.map(field => field.name).join(', ')}`;
   for (const field of fields) {
-    const value = values?.[field.name], width = widthOf(field);
+    const value = values?.[field.name],
+      width = widthOf(field);
     const group = fields.filter(other => other.name === field.name || other.instead_of === field.name);
     if (value === undefined) {
-      if (!field.optional && !field.instead_of && !group.some(other => values?.[other.name] !== undefined)) return `${field.name}: missing`;
+      if (!field.optional && !field.instead_of && !group.some(other => values?.[other.name] !== undefined))
+        return `${field.name}: missing`;
     } else if (field.kind === 'word') {
-      if (!field.words.includes(value)) return `${field.name} must be one of ${field.words.join(', ')}, got ${JSON.stringify(value)}`;
-    } else if (!([value].flat().length === width && [value].flat().every(number => typeof number === 'number' && Number.isFinite(number)))) {
+      if (!field.words.includes(value))
+        return `${field.name} must be one of ${field.words.join(', ')}, got ${JSON.stringify(value)}`;
+    } else if (!(
+      [value].flat().length === width &&
+      [value].flat().every(number => typeof number === 'number' && Number.isFinite(number))
+    )) {
       return `${field.name} must be ${width > 1 ? `${width} numbers` : 'a number'}, got ${JSON.stringify(value)}`;
     }
   }
@@ -99,10 +141,16 @@ function checkMaterial({ model, values, artist }) {
 
 /// A request of `hairis eval` for a slot: its answer is that of the readout.
 function request(slot) {
-  const material = materialOf(slot), model = kernel.model(material.model), params = fieldsOf(material, slot);
+  const material = materialOf(slot),
+    model = kernel.model(material.model),
+    params = fieldsOf(material, slot);
   return {
-    model: material.model, ...(model.choice && { [model.choice]: kernel.entry(material).word }), params,
-    wo: wo(state.view.theta), ...(model.near_field && { h: state.view.h }), wi: direction(state.cut.theta, state.cut.phi),
+    model: material.model,
+    ...(model.choice && { [model.choice]: kernel.entry(material).word }),
+    params,
+    wo: wo(state.view.theta),
+    ...(model.near_field && { h: state.view.h }),
+    wi: direction(state.cut.theta, state.cut.phi),
   };
 }
 
@@ -115,12 +163,18 @@ function fieldsOf(material, slot) {
 /// Takes a request of `hairis eval` as a slot's material; a refusal as text, or nothing.
 function takeRequest(text, slot) {
   let given;
-  try { given = JSON.parse(text); } catch (error) { return `The JSON was not read: ${error.message}.`; }
+  try {
+    given = JSON.parse(text);
+  } catch (error) {
+    return `The JSON was not read: ${error.message}.`;
+  }
   const model = kernel.model(given?.model);
-  if (!model) return `model must be one of ${kernel.models.map(({ name }) => name).join(', ')}, got ${JSON.stringify(given?.model)}`;
+  if (!model)
+    return `model must be one of ${kernel.models.map(({ name }) => name).join(', ')}, got ${JSON.stringify(given?.model)}`;
   const word = model.choice && given[model.choice];
   const entry = model.entries.find(one => one.word === (word ?? model.entries[0].word));
-  if (!entry) return `${model.choice} must be one of ${model.entries.map(one => one.word).join(', ')}, got ${JSON.stringify(word)}`;
+  if (!entry)
+    return `${model.choice} must be one of ${model.entries.map(one => one.word).join(', ')}, got ${JSON.stringify(word)}`;
   const material = { model: model.name, word: entry.word, values: given.params, artist: null };
   const refusal = checkMaterial(material) || kernel.setMaterial(slot, material);
   if (refusal) return refusal;
