@@ -1,8 +1,10 @@
 //! Shaders on a Vulkan driver: the bits of one lane where arithmetic keeps its order, its accuracy where it may not.
 
+use crate::gradients::Weighted;
 use crate::languages::{compile_glsl, tool, write_words};
-use crate::support::{Case, case_count, differing, every_model};
-use hairis_shaders::{Call, Function, Language, Program, Rounding, Target, driver, print, spirv};
+use crate::support::{Case, case_count, differing, every_model, same};
+use hairis_shaders::driver as shader_driver;
+use hairis_shaders::{Call, Function, Language, Program, Rounding, Target, print, spirv};
 use hairis_variants::{Registered, Visitor};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -65,7 +67,7 @@ impl Driver {
 }
 
 /// Calls whose results are compared: those of a shading point are parts of them.
-const CALLS: [Call; 2] = [Call::EvalHit, Call::SampleHit];
+const CALLS: [Call; 3] = [Call::EvalHit, Call::SampleHit, Call::Material];
 
 struct Kept;
 
@@ -175,7 +177,7 @@ impl Visitor for &Plain {
             let mut program = Program::of::<M>(target);
             let calls = CALLS.map(|call| program.function(call).clone());
             program.keep(calls.to_vec());
-            let source = print(&program, Language::Wgsl) + &driver(&program, Language::Wgsl);
+            let source = print(&program, Language::Wgsl) + &shader_driver(&program, Language::Wgsl);
             let module = vulkan.dir.path().join("module.spv");
             write_words(
                 &module,
@@ -222,4 +224,61 @@ impl Visitor for &Plain {
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn plain_shaders_have_the_accuracy_of_one_lane() {
     every_model(&Plain);
+}
+
+struct Gradients;
+
+impl Visitor for &Gradients {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        let Some(driver) = Driver::new() else { return };
+        let module = driver.dir.path().join("module.spv");
+        for target in [Target::Exact, Target::Gpu] {
+            let mut program = Program::of::<M>(target);
+            let cases =
+                [Call::Material, Call::EvalHit].map(|call| Weighted::new::<M>(&program, call));
+            program.keep(cases.each_ref().map(|cases| cases.gradient.clone()).into());
+            let run = |words: &[u32], cases: &Weighted| {
+                write_words(&module, words);
+                let (gradient, inputs) = (&cases.gradient, cases.all.concat());
+                driver.run(&module, gradient.name(), gradient, &inputs)
+            };
+            let kept = spirv::module(&program).expect("naga accepts it");
+            let source = print(&program, Language::Wgsl) + &shader_driver(&program, Language::Wgsl);
+            let plain = spirv::translate(&source).expect("naga accepts it");
+            for cases in &cases {
+                let gradient = &cases.gradient;
+                let name = format!("{} {} {target:?}", program.name(), gradient.name());
+                let expected = cases.all.iter();
+                // Drivers may lose the sign of 0, which `NoContraction` does not keep: no derivative depends on it.
+                let unsigned = |x: f32| if x == 0.0 { 0.0 } else { x };
+                let expected: Vec<_> = expected
+                    .map(|inputs| gradient.run(inputs, Rounding::Twice))
+                    .map(|results| results.into_iter().map(unsigned).collect::<Vec<_>>())
+                    .collect();
+                let got: Vec<_> = run(&kept, cases).into_iter().map(unsigned).collect();
+                let count = differing(gradient, &got, &expected);
+                if count > 0 {
+                    let places: Vec<_> = gradient.output().places().collect();
+                    for (at, (a, b)) in got.iter().zip(expected.iter().flatten()).enumerate() {
+                        if !same(*a, *b) {
+                            println!("{name}: {} is {a}, not {b}", places[at % places.len()]);
+                            break;
+                        }
+                    }
+                }
+                assert_eq!(count, 0, "{name}: gradients that differ from the graph's");
+                let got = run(&plain, cases);
+                let got = got.chunks(gradient.output().len()).map(<[f32]>::to_vec);
+                cases.check(&got.collect::<Vec<_>>(), &format!("{name} in WGSL"));
+            }
+        }
+    }
+}
+
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn gradients_of_shaders_are_those_of_differences() {
+    every_model(&Gradients);
 }
