@@ -29,7 +29,7 @@ pub(crate) struct Weighted {
     pub(crate) gradient: Function,
     /// Away from the edges.
     pub(crate) inputs: Vec<Vec<f32>>,
-    /// The same, and after them everything that a host may pass.
+    /// These, and after them everything that a host may pass.
     pub(crate) all: Vec<Vec<f32>>,
 }
 
