@@ -91,6 +91,7 @@ fn constants<W: Precision>(
 ) -> KajiyaKayMaterial<W::Lane> {
     let (c, one) = (W::constant, W::constant(1.0));
     let lane = <W::Lane as Lanes>::splat;
+    W::Lane::stage("integrals of powers of the cosine");
     let p = W::of(exponent);
     let b = cosine_integral(p + one);
     let m = W::select(reciprocal, c(2.0), one);
@@ -138,6 +139,7 @@ impl LobeModel for KajiyaKay {
             cos_theta,
             ..
         } = Direction::normalized(hit.wo);
+        L::stage("estimate of each lobe's albedo");
         let returned = cos_theta.mul_add(cos_theta, sin_theta * sin_theta * m.grazing.lanes());
         let reciprocal = L::splat(0.5).lt(m.reciprocal.lanes());
         let specular = m.mean[1].lanes() * L::select(reciprocal, returned, returned.sqrt());
@@ -169,13 +171,15 @@ impl LobeModel for KajiyaKay {
         let (sin_i, cos_i) = (wi.sin_theta, wi.cos_theta);
         let reciprocal = c(0.5).lt(m.reciprocal.lanes());
 
-        // cos^p of the sum of the inclinations: by the sine where that is small, as p magnifies what the cosine has lost.
+        L::stage("cos^p of the sum of the inclinations");
+        // By the sine where that is small, as p magnifies what the cosine has lost.
         let sin = sin_i.mul_add(cos_o, cos_i * sin_o);
         let cos = L::difference_of_products(cos_i, cos_o, sin_i, sin_o);
         // At most 1, for directions too that are longer than they should be: no power overflows.
         let s = zero.max(log2_near_one(cos * cos, -(sin * sin)) * m.exponent.lanes());
         let bell = L::keep(zero.lt(cos), gaussian(s));
 
+        L::stage("value and density of both lobes");
         // The density over both signs of the sum; one division for it and for 1 / cos theta_i.
         let mirrored = zero.max(cos.mul_sub(cos_o, sin * sin_o));
         let both = power(reciprocal, cos_i) + power(reciprocal, mirrored);
@@ -200,6 +204,7 @@ impl LobeModel for KajiyaKay {
         let is_diffuse = lobe.equals(0);
         let reciprocal = c(0.5).lt(prepared.material.reciprocal.lanes());
 
+        L::stage("sum of the inclinations, by the polar method");
         // The polar method for a power of the cosine: 2 for the diffuse lobe, p for the specular one. `rest` is what the
         // squared radius of a point in the disk leaves of 1.
         let (rest, radius_sq) =
@@ -212,7 +217,8 @@ impl LobeModel for KajiyaKay {
         let sin = radius_sq.sqrt() * sin_turn;
         let cos = (radius_sq * cos_turn).mul_add(cos_turn, rest).sqrt();
 
-        // The sign of the sum, by the cosine that the power leaves out.
+        L::stage("sign of the sum");
+        // By the cosine that the power leaves out.
         let minus = cos.mul_add(cos_o, sin * sin_o);
         let plus = L::difference_of_products(cos, cos_o, sin, sin_o);
         let (kept, turned) = (
@@ -230,6 +236,7 @@ impl LobeModel for KajiyaKay {
         let sin_i = sum.mul_sub(cos_o, cos * sin_o);
         let cos_i = zero.max(L::select(keep, minus, plus));
 
+        L::stage("direction at this inclination, at a uniform azimuth");
         let theta = [
             L::select(is_diffuse, sin, sin_i),
             L::select(is_diffuse, cos, cos_i),

@@ -44,6 +44,7 @@ impl<L: Lanes> Angles<L> {
         view: &HairView<C>,
         wi: Vec3x<L>,
     ) -> (Self, L::Mask) {
+        L::stage("wi: inclination, and azimuth relative to wo");
         let c = L::splat;
         let plane_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
         let cos_theta_i = plane_sq.sqrt();
@@ -84,7 +85,7 @@ impl<L: Lanes> Angles<L> {
     pub(crate) fn eval_lobes<B: Bell, C: Broadcast<L>>(&self, view: &HairView<C>) -> LobeTerms<L> {
         let c = L::splat;
         let one = c(1.0);
-        // Distances from the centres of the bells in widths, squared.
+        L::stage("distances from the centres of the lobes in widths, squared");
         let hair = &view.lobes;
         let plus_quarter = self.half_theta_i_plus_quarter;
         // Alone: in vectors of them and numbers next to them in memory, squares that nobody uses overflow.
@@ -109,7 +110,8 @@ impl<L: Lanes> Angles<L> {
             y_g * y_g,
         );
 
-        // The Cauchy value of each. Each of the five is at most 1e9, so that four of them
+        L::stage("Cauchy bell of each distance");
+        // Each of the five is at most 1e9, so that four of them
         // multiplied stay below the largest float.
         let (d_r, d_tt_x, d_trt) = (
             one_plus_square(x_r),
@@ -120,7 +122,8 @@ impl<L: Lanes> Angles<L> {
         let (d_tt, d_g) = (d_tt_x * d_tt_y, d_trt * d_g_y);
         let [cauchy_tt, cauchy_g] = quotients([one, d_tt], [one, d_g]);
         let cauchy_trt = cauchy_g * d_g_y;
-        // Cos^2 theta_d is the squared length of the mean of the two directions in the meridian plane: exact where both
+        L::stage("cos^2 theta_d");
+        // The squared length of the mean of the two directions in the meridian plane: exact where both
         // are near opposite poles, where 1 + cos cos + sin sin cancels.
         let half = c(0.5);
         let mean_u = self
@@ -146,6 +149,7 @@ impl<L: Lanes> Angles<L> {
             cauchy_s: cauchy_trt,
             cauchy_t: cauchy_g * d_trt,
         };
+        L::stage("bells of the lobes: M N");
         let [m_r, f_tt, m_trt, f_g] = B::four(FourBells {
             s_r,
             cauchy_r,
@@ -183,6 +187,7 @@ impl<L: Lanes> LobeTerms<L> {
     /// S times `cos^2 theta_d`, linear RGB.
     #[inline(always)]
     pub(crate) fn sum_lobes<C: Broadcast<L>>(&self, view: &HairView<C>) -> [L; 3] {
+        L::stage("sum of the lobes in their colours");
         let hair = &view.lobes;
         let trt = self.value[2] * hair.strength[2].lanes();
         let (f_r, f_tt) = (self.value[0], self.value[1]);

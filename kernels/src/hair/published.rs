@@ -82,6 +82,7 @@ impl<L: Lanes<Stored = L>> PublishedMaterial<L> {
     pub(super) fn of<B: Bell, W: Precision<Lane = L>>(bell: B, d: &HairDesc<L>) -> Self {
         let c = L::splat;
         let lobes = HairLobes::of::<B, W>(bell, d);
+        L::stage("sampler: azimuths of TT and the glints, as truncated Cauchy distributions");
         let phi_g = d.phi_g;
         let [gamma_tt, gamma_g] = lobes.half_gamma.map(|half| half * 2.0);
         let glint = TruncatedCauchy::new(-phi_g, c(FRAC_PI_2) - phi_g, gamma_g);
@@ -118,6 +119,7 @@ fn energies<W: Precision>(
     let (c, zero) = (W::constant, W::constant(0.0));
     let (colors, [of_r, of_tt, of_trt, of_glint]) = intensities::<W>(d);
     let [i_r, i_tt, i_trt] = colors.map(|[r, g, b]| (r + g + b) / c(3.0));
+    <W::Lane as Lanes>::stage("energy of each lobe, and its share");
     let root = c(4.0 * libm::sqrt(2.0 * PI));
     let [r, tt, trt, glint] = [
         root * W::of(beta[0]) * i_r * of_r,
@@ -157,6 +159,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     let c = L::splat;
     let (hair, sampler) = (&m.lobes, &m.sampler);
     let view = view::prepare(hair, wo);
+    L::stage("sampler: inclinations, as Cauchy distributions cut to the sphere");
     let quarter_o = view.quarter_o.lanes();
     let ends = [quarter_o - FRAC_PI_4, quarter_o + FRAC_PI_4];
     let [r, tt, trt] = [
@@ -166,6 +169,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     ];
     let span = [r.span, tt.span, trt.span];
 
+    L::stage("sampler: density of each lobe but for its shape");
     // 1 / (2 span beta) of the three, from one division; each is at least 1e-9.
     // Alone: in vectors with the squares of an evaluation that follows, unused lanes hold denormals, which take twice the time.
     let range = [

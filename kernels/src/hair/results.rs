@@ -28,6 +28,7 @@ fn scale3<L: Lanes>(x: [L; 3], by: L, limit: L) -> [L; 3] {
 /// The density of a mixture of lobes, from the shape of each lobe's density and its weight.
 #[inline(always)]
 pub(crate) fn mix_densities<L: Lanes, C: Broadcast<L>>(lobes: [L; 4], weight: &[C; 4]) -> L {
+    L::stage("density of the mixture of lobes");
     let back = lobes[1].mul_add(weight[1].lanes(), lobes[3] * weight[3].lanes());
     let d = lobes[2].mul_add(weight[2].lanes(), back);
     lobes[0].mul_add(weight[0].lanes(), d)
@@ -42,6 +43,7 @@ pub(crate) fn finish_eval<L: Lanes, C: Broadcast<L>>(
     terms: &LobeTerms<L>,
     density: L,
 ) -> Eval<L> {
+    L::stage("value and density, 0 where wi is no direction");
     let limit = limit::<L>(sound);
     let value = scale3(terms.sum_lobes(view), terms.inv_cos_sq_theta_d, limit);
     Eval {
@@ -59,6 +61,7 @@ pub(crate) fn finish_lobes<L: Lanes, C: Broadcast<L>>(
     terms: &LobeTerms<L>,
     density: [L; 4],
 ) -> PerLobe<LobeEval<L>> {
+    L::stage("value and density of each lobe, 0 where wi is no direction");
     let limit = limit::<L>(sound);
     let hair = &view.lobes;
     let colors = [
@@ -88,6 +91,7 @@ pub(crate) fn finish_sample<L: Lanes, C: Broadcast<L>>(
     terms: &LobeTerms<L>,
     density: L,
 ) -> SampleLanes<L> {
+    L::stage("value, density and weight of the sample, 0 where it is discarded");
     let cos = angles.cos_theta_i;
     let sound = L::and(
         L::splat(GRAZING).lt(cos),

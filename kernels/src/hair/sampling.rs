@@ -16,12 +16,14 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(
     let c = L::splat;
     let (zero, one, half) = (c(0.0), c(1.0), c(0.5));
     let (view, hair, sampler) = (&prepared.view, &prepared.view.lobes, &prepared.sampler);
+    L::stage("lobe that xi.x selects");
     let choice = L::Index::search(xi[0], lanes3(&sampler.bounds), 3);
     // The second operand wins over NaN: that of either number stays, and the sample has no
     // inclination.
     let along = zero.max(one.min(xi[1].min(xi[0] + xi[1])));
 
-    // Inclination: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Interleaved with the azimuth.
+    L::stage("inclination by xi.y and azimuth by xi.z, by inversion of the Cauchy distributions");
+    // x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Interleaved with the azimuth.
     let folded = FoldedXi::of(xi[2]);
     let both = TruncatedCauchy {
         tan_mid: Pair(
@@ -82,6 +84,7 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     FoldedXi { side, across }: FoldedXi<L>,
     psi: L,
 ) -> (Vec3x<L>, Angles<L>) {
+    L::stage("sines and cosines of the inclination and of half the azimuth");
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
     let is_tt = choice.equals(1);
@@ -106,7 +109,8 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     let half = L::select(as_drawn, psi, half_angle(small + small, large));
     let of_phi = sin_half_phi.lt(cos_half_phi);
 
-    // The direction, from the double angle; phi_i = phi_o - phi. The sides of R and TRT-g are the other way round.
+    L::stage("direction");
+    // From the double angle; phi_i = phi_o - phi. The sides of R and TRT-g are the other way round.
     let sin_psi_sq = sin_psi * sin_psi;
     let sin_twice = (sin_psi + sin_psi) * cos_psi;
     let cos_phi = L::negate(is_tt, cos_psi.mul_sub(cos_psi, sin_psi_sq));
@@ -119,7 +123,8 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by;
     let w = w_o.mul_sub(cos_phi, v_o * sin_phi) * by;
 
-    // Half of |phi|, rotated by the rounding error of the direction. A division of its own: nothing before it waits for it.
+    L::stage("angles of that direction: half the azimuth, turned by the rounding of the direction");
+    // A division of its own: nothing before it waits for it.
     let inv_cos_theta_i = L::quotient(one, c(LEAST_COSINE).max(cos_theta_i));
     let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();

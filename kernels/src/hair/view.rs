@@ -68,6 +68,7 @@ impl<L: Lanes<Stored = L>> HairLobes<L> {
     #[inline]
     #[must_use]
     pub(crate) fn of<B: Bell, W: Precision<Lane = L>>(bell: B, d: &HairDesc<L>) -> Self {
+        L::stage("widths of the lobes, and azimuths of TT and the glints");
         let (c, one, pi) = (L::splat, L::splat(1.0), L::splat(PI));
         let k = bell.width_factor();
         // Below 5e-5 rad the product of four Cauchy denominators overflows far from the centres.
@@ -80,6 +81,7 @@ impl<L: Lanes<Stored = L>> HairLobes<L> {
         // Glints of absurd strength take the excess from the colour, so that their product overflows last.
         let excess = (d.i_g * 1e-6).max(one);
         let area = |lo: L, hi: L, width: L| {
+            L::stage("area of the azimuth's bell");
             let (lo, hi) = (L::quotient(lo, width), L::quotient(hi, width));
             let area = if W::IS_DOUBLE {
                 bell_area::<B, L>(lo, hi)
@@ -126,7 +128,9 @@ pub(crate) fn intensities<W: Precision>(d: &HairDesc<W::Lane>) -> ([[W; 3]; 3], 
         let factors = [one, one, one, d.i_g];
         return (colors.map(|rgb| rgb.map(W::of)), factors.map(W::of));
     }
-    // Each lobe to the scale of its brightest channel, and these to the scale of the brightest lobe: no product overflows.
+    <W::Lane as Lanes>::stage(
+        "intensity of each lobe to the scale of its brightest channel, and these to that of the brightest lobe",
+    );
     let least = c(f32::MIN_POSITIVE);
     let largest = colors.map(|[r, g, b]| r.max(g).max(b));
     let brightest = largest[0].max(largest[1]).max(largest[2]).max(least);
@@ -157,6 +161,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
     lobes: &HairLobes<C>,
     wo: Vec3x<L>,
 ) -> HairView<L::Stored> {
+    L::stage("wo: length, inclination, and the part across the fibre");
     let c = L::splat;
     let one = c(1.0);
     // The digits of a wo of about unit length are kept as they are; any other is scaled by its largest component, so
@@ -186,6 +191,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
     let cos_phi_o = L::select(off_axis, y * inv_plane, one);
     let sin_phi_o = z * inv_plane;
 
+    L::stage("half the inclination of wo, less the shift of each lobe");
     let [r, tt, trt] = lanes3(&lobes.alpha);
     let [r, tt, trt] = [half_rest - r, half_rest - tt, half_rest - trt];
 

@@ -24,6 +24,7 @@ impl<L: Lanes> Direction<L> {
     #[inline(always)]
     #[must_use]
     pub fn new(vector: Vec3x<L>) -> Self {
+        L::stage("wi: cosine of the inclination, and whether it is a direction");
         let Vec3x { x, y, z } = vector;
         let cos_sq = y.mul_add(y, z * z);
         let cos_theta = cos_sq.sqrt();
@@ -44,6 +45,7 @@ impl<L: Lanes> Direction<L> {
     #[inline(always)]
     #[must_use]
     pub fn normalized(vector: Vec3x<L>) -> Self {
+        L::stage("wo at unit length, and the cosine of its inclination");
         let c = L::splat;
         let (one, half) = (c(1.0), c(0.5));
         let Vec3x { x, y, z } = vector;

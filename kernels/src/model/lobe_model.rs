@@ -174,6 +174,7 @@ fn total<M: LobeModel, L: Lanes, C: Broadcast<L>>(
     wi: &Direction<L>,
 ) -> Eval<L> {
     let (PerLobe(lobes), mixture) = (M::lobes(&prepared.prepared, wi), &prepared.mixture);
+    L::stage("value and density: sums over the lobes, 0 where wi is no direction");
     let value = lobes[0].value * mixture.kept[0].lanes();
     let [r, g, b] = lobes[0].color;
     let mut sum = [
@@ -250,7 +251,7 @@ impl<M: LobeModel> Model for M {
         hit: Hit<L>,
     ) -> Mixed<M::Prepared<L::Stored>, L::Stored> {
         let (one, infinity) = (L::splat(1.0), L::splat(f32::INFINITY));
-        // No lobe scatters towards a wo that is NaN or infinite, and the model is given another.
+        L::stage("whether wo is finite: no lobe scatters towards any other");
         let Vec3x { x, y, z } = hit.wo;
         let finite = L::and(
             L::and(x.abs().lt(infinity), y.abs().lt(infinity)),
@@ -262,6 +263,7 @@ impl<M: LobeModel> Model for M {
             L::keep(finite, z),
         );
         let prepared = <M as LobeModel>::prepare(material, Hit::new(wo, hit.h));
+        L::stage("probability of each lobe");
         let kept = L::keep(finite, one);
         let mixture = Mixture::new(M::weights::<L, L::Stored>(&prepared).0, [kept; 4]).store();
         Mixed { prepared, mixture }
@@ -297,6 +299,7 @@ impl<M: LobeModel> Model for M {
         let wi = Direction::new(wi);
         let limit = limit::<L>(wi.is_sound());
         let mut lobes = <M as LobeModel>::lobes(&prepared.prepared, &wi);
+        L::stage("value and density of each lobe, 0 where wi is no direction");
         let mut l = 0;
         while l < M::LOBES.len() {
             let kept: L = prepared.mixture.kept[l].lanes();
@@ -314,9 +317,10 @@ impl<M: LobeModel> Model for M {
     ) -> SampleLanes<L> {
         let c = L::splat;
         let (zero, most) = (c(0.0), c(BELOW_ONE));
+        L::stage("lobe that xi.x selects, and xi.x stretched to [0, 1) again");
         let m = &prepared.mixture;
         let lobe = L::Index::search(xi[0], lanes3(&m.bounds), M::LOBES.len() - 1);
-        // Stretch the first number again, from the nearer end, where differences are exact: a rare lobe keeps the low bits.
+        // From the nearer end, where differences are exact: a rare lobe keeps the low bits.
         let (start, start_less_one) = (
             C::look_up(&m.start, lobe),
             C::look_up(&m.start_less_one, lobe),
@@ -336,6 +340,7 @@ impl<M: LobeModel> Model for M {
         ];
         let wi = M::sample_lobe(&prepared.prepared, lobe, xi);
         let Eval { value, pdf } = total::<M, L, C>(prepared, &wi);
+        L::stage("density and weight of the sample, 0 where it is discarded");
         let sound = L::and(L::and(wi.is_sound(), c(LEAST_DENSITY).lt(pdf)), numbers);
         let limit = limit::<L>(sound);
         let by = L::quotient(wi.cos_theta, pdf);

@@ -114,6 +114,9 @@ pub trait Lanes:
     fn native_log2(self) -> Option<Self> {
         None
     }
+    /// Says what the operations that follow compute, to lanes that record: a comment in generated source.
+    #[inline(always)]
+    fn stage(_sentence: &'static str) {}
     /// `self < other`, false for NaN.
     fn lt(self, other: Self) -> Self::Mask;
     /// Both masks.

@@ -132,6 +132,8 @@ pub trait Recorder: 'static {
     /// Records the operation `op` on the results named by `args`, of which it reads [`Op::arity`]. `at` is the line of the
     /// model that asked for it.
     fn record(op: Op, args: [u32; 3], at: &'static Location<'static>) -> u32;
+    /// Receives what the operations that follow compute, as the model says it.
+    fn stage(sentence: &'static str);
 }
 
 /// The arithmetic of the target that a graph is for. Sealed.
@@ -333,6 +335,10 @@ impl<R: Recorder, A: Arithmetic> Lanes for Traced<R, A> {
     #[track_caller]
     fn native_log2(self) -> Option<Self> {
         A::NATIVE.then(|| Self::op(Op::Log2, [self.name, 0, 0]))
+    }
+    #[inline]
+    fn stage(sentence: &'static str) {
+        R::stage(sentence);
     }
     #[inline]
     #[track_caller]

@@ -82,7 +82,7 @@ impl Function {
                 for (arg, operand) in args.iter_mut().zip(node.operands()) {
                     *arg = places[*operand as usize];
                 }
-                places[place as usize] = kept.copy(node, args, graph.line(place));
+                places[place as usize] = kept.copy(node, args, graph.origin(place));
             }
         }
         let results = results

@@ -163,6 +163,8 @@ impl Function {
             graph: self.graph().clone(),
             adjoints: vec![None; self.graph().nodes().len()],
         };
+        pass.graph
+            .set_stage("derivatives, from the results back to the arguments");
         for (result, place) in self.results().iter().zip(inputs..) {
             let place = u32::try_from(place).expect("a function has less than 2^32 arguments");
             let weight = pass.graph.input(place);

@@ -121,15 +121,22 @@ pub(crate) fn apply(op: Op, v: &[Value], rounding: Rounding) -> Value {
     }
 }
 
-/// Line of a model's source.
-pub type Line = &'static Location<'static>;
+/// Place of an operation in its model.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Origin {
+    /// Purpose, as the model states it for itself and the operations that follow.
+    pub stage: Option<&'static str>,
+    /// Line of the source that first asked for it; none for inputs and derivatives.
+    pub line: Option<&'static Location<'static>>,
+}
 
 /// Nodes, none of which occurs twice. Operands come before the nodes that read them.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     nodes: Vec<Node>,
-    /// Line of the model that first asked for each node.
-    lines: Vec<Option<Line>>,
+    origins: Vec<Origin>,
+    /// Stage of the operations that are added.
+    stage: Option<&'static str>,
     known: HashMap<Node, u32>,
 }
 
@@ -146,10 +153,15 @@ impl Graph {
         &self.nodes[place as usize]
     }
 
-    /// Line of the model that first asked for the node at a place; none for inputs and derivatives.
+    /// Place in the model of the node at a place.
     #[must_use]
-    pub fn line(&self, place: u32) -> Option<Line> {
-        self.lines[place as usize]
+    pub fn origin(&self, place: u32) -> Origin {
+        self.origins[place as usize]
+    }
+
+    /// Sets the stage of operations that are added.
+    pub(crate) fn set_stage(&mut self, sentence: &'static str) {
+        self.stage = Some(sentence);
     }
 
     /// Constant number of the node at a place.
@@ -176,13 +188,13 @@ impl Graph {
     }
 
     /// Adds a node, or finds it.
-    fn push(&mut self, node: Node, line: Option<Line>) -> u32 {
+    fn push(&mut self, node: Node, origin: Origin) -> u32 {
         if let Some(known) = self.known.get(&node) {
             return *known;
         }
         let place = u32::try_from(self.nodes.len()).expect("a graph has less than 2^32 nodes");
         self.nodes.push(node);
-        self.lines.push(line);
+        self.origins.push(origin);
         self.known.insert(node, place);
         place
     }
@@ -190,28 +202,33 @@ impl Graph {
     /// Adds the argument at `place` of a function.
     pub(crate) fn input(&mut self, place: u32) -> u32 {
         let kind = Kind::Input(place);
-        self.push(Node { kind, args: [0; 3] }, None)
+        self.push(Node { kind, args: [0; 3] }, Origin::default())
     }
 
     /// Adds a constant.
     pub(crate) fn constant(&mut self, x: f32) -> u32 {
         let kind = Kind::Op(Op::Constant(x.to_bits()));
-        self.push(Node { kind, args: [0; 3] }, None)
+        self.push(Node { kind, args: [0; 3] }, Origin::default())
     }
 
     fn constant_mask(&mut self, mask: bool) -> u32 {
         let kind = Kind::Mask(mask);
-        self.push(Node { kind, args: [0; 3] }, None)
+        self.push(Node { kind, args: [0; 3] }, Origin::default())
     }
 
     /// Adds a node of another graph, whose operands are here at `args`.
-    pub(crate) fn copy(&mut self, node: &Node, args: [u32; 3], line: Option<Line>) -> u32 {
+    pub(crate) fn copy(&mut self, node: &Node, args: [u32; 3], origin: Origin) -> u32 {
         let kind = node.kind;
-        self.push(Node { kind, args }, line)
+        self.push(Node { kind, args }, origin)
     }
 
     /// Adds an operation. Constants are computed, and what changes no bit of a number is left out. NaN stays NaN.
-    pub(crate) fn op(&mut self, op: Op, args: [u32; 3], line: Option<Line>) -> u32 {
+    pub(crate) fn op(
+        &mut self,
+        op: Op,
+        args: [u32; 3],
+        line: Option<&'static Location<'static>>,
+    ) -> u32 {
         if let Op::Constant(bits) = op {
             return self.constant(f32::from_bits(bits));
         }
@@ -232,7 +249,8 @@ impl Graph {
         if matches!(op, Op::Add | Op::Mul | Op::MulAdd | Op::And | Op::Or) {
             node.args[..2].sort_unstable();
         }
-        self.push(node, line)
+        let stage = self.stage;
+        self.push(node, Origin { stage, line })
     }
 
     fn constants(&self, places: &[u32]) -> Option<Vec<Value>> {
@@ -289,8 +307,11 @@ thread_local! {
 pub(crate) enum Tape {}
 
 impl Recorder for Tape {
-    fn record(op: Op, args: [u32; 3], at: Line) -> u32 {
+    fn record(op: Op, args: [u32; 3], at: &'static Location<'static>) -> u32 {
         GRAPH.with_borrow_mut(|graph| graph.op(op, args, Some(at)))
+    }
+    fn stage(sentence: &'static str) {
+        GRAPH.with_borrow_mut(|graph| graph.set_stage(sentence));
     }
 }
 

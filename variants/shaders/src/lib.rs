@@ -27,7 +27,7 @@ pub mod spirv;
 
 pub use call::{Call, Target};
 pub use function::{Argument, Function};
-pub use graph::{Graph, Kind, Line, Node, Rounding};
+pub use graph::{Graph, Kind, Node, Origin, Rounding};
 pub use material::parameters;
 pub use print::{Language, driver, print};
 pub use program::Program;

@@ -69,6 +69,7 @@ pub(crate) fn material<M: Registered, A: Arithmetic>(output: &Record) -> Functio
             Some(true) => input(next),
             _ => Lane::<A>::splat(0.0),
         });
+        Lane::<A>::stage("words among the parameters");
         let material = M::constants::<Single<Lane<A>>>(&values);
         let numbers = numbers(&material).into_iter();
         numbers.map(Lane::name).collect::<Vec<_>>()

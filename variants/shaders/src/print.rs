@@ -6,7 +6,7 @@ mod syntax;
 
 use crate::call::Call;
 use crate::function::{Argument, Function};
-use crate::graph::{Kind, Line};
+use crate::graph::{Kind, Origin};
 use crate::program::Program;
 use crate::record::{Field, Record, Shape};
 use core::fmt::Write as _;
@@ -178,13 +178,18 @@ fn declare(out: &mut String, program: &Program, language: Language, record: &Rec
     out.push_str("\n\n");
 }
 
-/// Place of a line in its package, without the folders above: `hair/view.rs:88`.
-fn place(line: Line) -> String {
-    let file = line.file().replace('\\', "/");
+/// Comment on an operation: its stage, or the file of the model, as `hair/view.rs`; none for vectors and choices, which belong to
+/// the operations around them.
+fn comment(origin: Origin) -> Option<String> {
+    if let Some(stage) = origin.stage {
+        return Some(stage.to_owned());
+    }
+    let file = origin.line?.file().replace('\\', "/");
     let file = file
         .rsplit_once("/src/")
         .map_or(file.as_str(), |(_, file)| file);
-    format!("{file}:{}", line.line())
+    let is_part = file.starts_with("simd/") || file == "frame.rs";
+    (!is_part).then(|| file.to_owned())
 }
 
 /// A function that is printed.
@@ -209,9 +214,13 @@ impl<'a> Body<'a> {
 
     fn print(&self, out: &mut String) {
         self.signature(out);
-        let mut file = "";
+        let mut last = None;
         for place in self.function.schedule() {
-            self.comment(out, place, &mut file);
+            let now = comment(self.function.graph().origin(place));
+            if now.is_some() && now != last {
+                let _ = writeln!(out, "    // {}", now.as_deref().unwrap_or_default());
+                last = now;
+            }
             let value = self.value(place);
             let (binding, name) = (self.binding(place), self.name(place));
             let _ = writeln!(out, "    {binding} {name} = {value};");
@@ -280,20 +289,6 @@ impl<'a> Body<'a> {
             first = here.end;
         }
         unused
-    }
-
-    /// Names the model's source file where it changes, and its line.
-    fn comment(&self, out: &mut String, place_of_node: u32, file: &mut &'static str) {
-        let Some(line) = self.function.graph().line(place_of_node) else {
-            return;
-        };
-        // Vectors and choices belong to the lines around them.
-        let place = place(line);
-        let is_part = place.starts_with("simd/") || place.starts_with("frame.rs:");
-        if !is_part && line.file() != *file {
-            *file = line.file();
-            let _ = writeln!(out, "    // {place}");
-        }
     }
 
     fn binding(&self, place: u32) -> &'static str {

@@ -9,7 +9,7 @@ use hairis::Eval;
 use hairis::Hit;
 use hairis::model::{Model, SampleLanes};
 use hairis::simd::trace::{Arithmetic, Exact, Fused, Gpu, GpuNative, Op};
-use hairis::simd::{LaneStruct, Path, Vec3x};
+use hairis::simd::{LaneStruct, Lanes, Path, Vec3x};
 use hairis_variants::{ModelId, Parameters, Registered, Visitor};
 
 /// A model's functions and records, for one target.
@@ -306,6 +306,7 @@ fn function<M: Model, A: Arithmetic>(call: Call, material: &Record, prepared: &R
         } else {
             let material: M::Material<Lane<A>> = lanes(next);
             let wo = vector(next);
+            Lane::<A>::stage("h, at most 1 from the axis");
             let hit = Hit::new(wo, input(next));
             M::prepare::<Lane<A>, Lane<A>>(&material, hit)
         };
@@ -414,7 +415,18 @@ pub fn every_operation(target: Target) -> Program {
 mod tests {
     use super::*;
     use crate::graph::Rounding;
-    use hairis::simd::Lanes;
+
+    /// Names are an interface: code that uploads numbers by their place has to notice that one has another meaning.
+    #[test]
+    fn a_renamed_number_is_another_layout() {
+        let program = Program::of::<hairis_variants::KajiyaKay>(Target::Exact);
+        let mut renamed = program.clone();
+        renamed.material.fields[0].name = "diffuse".to_owned();
+        let mut swapped = program.clone();
+        swapped.prepared.fields.swap(0, 1);
+        assert_ne!(renamed.layout(), program.layout());
+        assert_ne!(swapped.layout(), program.layout());
+    }
 
     /// A difference of products keeps its digits where products with sums round twice. That of levels that fuse does not.
     #[test]

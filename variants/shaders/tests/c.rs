@@ -1,5 +1,6 @@
 //! The header compiles without warnings as C and C++, and has the bits of one lane.
 
+use crate::gradients::Weighted;
 use crate::support::{Case, case_count, differing, every_model, fusing_level, same};
 use hairis_shaders::{Call, Function, Language, Program, Rounding, Target, driver, print};
 use hairis_variants::{KajiyaKay, Parameters, Registered, Visitor};
@@ -135,6 +136,15 @@ fn clang_has_the_bits_of_one_lane() {
     bits("clang", &["-std=c99", "-O2"]);
 }
 
+/// Clang contracts by default where the machine fuses. The header's pragma forbids it.
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn clang_keeps_products_and_sums_apart() {
+    if fusing_level().is_some() && cfg!(target_arch = "x86_64") {
+        bits("clang", &["-O2", "-mfma"]);
+    }
+}
+
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn cpp_has_the_bits_of_one_lane() {
@@ -149,23 +159,23 @@ impl Visitor for Gradients {
 
     fn visit<M: Registered>(self) {
         let mut program = Program::of::<M>(Target::Exact);
-        let gradient = program.function(Call::EvalHit).gradient();
-        program.keep(vec![gradient.clone()]);
+        let cases = [Call::Material, Call::EvalHit].map(|call| Weighted::new::<M>(&program, call));
+        program.keep(cases.each_ref().map(|cases| cases.gradient.clone()).into());
         let Some((_dir, binary)) = compiled(&program) else {
             return;
         };
-        let cases = Case::<M>::many(1024, 49);
-        let inputs: Vec<_> = cases
-            .iter()
-            .map(|case| [&case.arguments(Call::EvalHit)[..], &[0.5, 1.0, -0.5, 2.0]].concat())
-            .collect();
-        let expected: Vec<_> = inputs
-            .iter()
-            .map(|inputs| gradient.run(inputs, Rounding::Once))
-            .collect();
-        let got = run(&binary, gradient.name(), &inputs.concat());
-        let differ = differing(&gradient, &got, &expected);
-        assert_eq!(differ, 0, "{}: gradients that differ", program.name());
+        for cases in &cases {
+            let gradient = &cases.gradient;
+            let name = format!("{} {} in C", program.name(), gradient.name());
+            let got = run(&binary, gradient.name(), &cases.all.concat());
+            let expected = cases.all.iter();
+            let expected: Vec<_> = expected
+                .map(|inputs| gradient.run(inputs, Rounding::Once))
+                .collect();
+            let differ = differing(gradient, &got, &expected);
+            assert_eq!(differ, 0, "{name}: gradients that differ from the graph's");
+            cases.check(&expected, &name);
+        }
     }
 }
 

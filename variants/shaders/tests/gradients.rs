@@ -23,6 +23,73 @@ fn difference(function: &Function, inputs: &[f64], weights: &[f32], place: usize
     (before == after).then_some((high - low) / (2.0 * step))
 }
 
+/// Cases whose gradients are compared with differences: arguments of a function, and the weights of its results.
+pub(crate) struct Weighted {
+    pub(crate) function: Function,
+    pub(crate) gradient: Function,
+    /// Away from the edges.
+    pub(crate) inputs: Vec<Vec<f32>>,
+    /// These, and after them everything that a host may pass.
+    pub(crate) all: Vec<Vec<f32>>,
+}
+
+impl Weighted {
+    pub(crate) fn new<M: Registered>(program: &Program, call: Call) -> Self {
+        let function = program.function(call).clone();
+        let gradient = function.gradient();
+        let mut random = Random(46);
+        let mut weighted = |case: Case<M>| {
+            let mut inputs = case.arguments(call);
+            inputs.extend(function.results().iter().map(|_| random.range(-1.0, 1.0)));
+            inputs
+        };
+        let smooth = Case::<M>::smooth(48, 47).into_iter();
+        let inputs: Vec<_> = smooth.map(&mut weighted).collect();
+        let edges = Case::<M>::many(976, 49).into_iter().map(weighted);
+        let all = inputs.iter().cloned().chain(edges).collect();
+        Self {
+            inputs,
+            all,
+            gradient,
+            function,
+        }
+    }
+
+    /// Compares gradients with differences in double precision: 1e-6 in the median, 1e-3 for 99.9%.
+    pub(crate) fn check(&self, gradients: &[Vec<f32>], name: &str) {
+        let (count, results) = (self.function.inputs().len(), self.function.output().len());
+        assert!(gradients.len() >= self.inputs.len(), "{name}: cases");
+        let mut errors = Vec::new();
+        for (inputs, got) in self.inputs.iter().zip(gradients) {
+            assert_eq!(got.len(), results + count, "results, and a derivative each");
+            let (inputs, weights) = inputs.split_at(count);
+            let exact: Vec<f64> = inputs.iter().copied().map(f64::from).collect();
+            let loss: f64 = got
+                .iter()
+                .zip(weights)
+                .map(|(x, w)| f64::from((x * w).abs()))
+                .sum();
+            for (place, got) in got[results..].iter().enumerate() {
+                if let Some(expected) = difference(&self.function, &exact, weights, place) {
+                    // A thousandth of the loss for a change of the whole argument counts as nothing.
+                    let least = 1e-3 * loss / exact[place].abs().max(1e-2);
+                    let scale = expected.abs().max(least).max(1e-30);
+                    errors.push((f64::from(*got) - expected).abs() / scale);
+                }
+            }
+        }
+        let all = self.inputs.len() * count;
+        assert!(errors.len() > all / 2, "{} of {all} smooth", errors.len());
+        errors.sort_by(f64::total_cmp);
+        let (median, most) = (
+            errors[errors.len() / 2],
+            errors[errors.len() - 1 - errors.len() / 1000],
+        );
+        println!("{name}: {median:e}, {most:e}");
+        assert!(median < 1e-6 && most < 1e-3, "{name}: {median:e}, {most:e}");
+    }
+}
+
 #[derive(Clone, Copy)]
 struct Differences(Call);
 
@@ -31,59 +98,21 @@ impl Visitor for Differences {
 
     fn visit<M: Registered>(self) {
         let program = Program::of::<M>(Target::Exact);
-        let function = program.function(self.0);
-        let gradient = function.gradient();
-        let (count, results) = (function.inputs().len(), function.output().len());
-        let len = gradient.output().len();
-        assert_eq!(len, results + count, "results, and a derivative each");
-        let mut random = Random(46);
-        let mut errors = Vec::new();
-        for case in Case::<M>::smooth(48, 47) {
-            let inputs = case.arguments(self.0);
-            let weights: Vec<f32> = (0..results).map(|_| random.range(-1.0, 1.0)).collect();
-            let got = gradient.run(&[&inputs[..], &weights].concat(), Rounding::Once);
-            assert_eq!(
-                got[..results],
-                function.run(&inputs, Rounding::Once),
-                "the results"
-            );
-            let exact: Vec<f64> = inputs.iter().copied().map(f64::from).collect();
-            let loss: f64 = got
-                .iter()
-                .zip(&weights)
-                .map(|(x, w)| f64::from((x * w).abs()))
-                .sum();
-            for (place, got) in got[results..].iter().enumerate() {
-                if let Some(expected) = difference(function, &exact, &weights, place) {
-                    // A thousandth of the loss for a change of the whole argument counts as nothing.
-                    let least = 1e-3 * loss / exact[place].abs().max(1e-2);
-                    let scale = expected.abs().max(least).max(1e-30);
-                    errors.push((f64::from(*got) - expected).abs() / scale);
-                }
-            }
-        }
-        assert!(
-            errors.len() > 48 * count / 2,
-            "{} of {} smooth",
-            errors.len(),
-            48 * count
-        );
-        errors.sort_by(f64::total_cmp);
-        let (median, most) = (
-            errors[errors.len() / 2],
-            errors[errors.len() - 1 - errors.len() / 1000],
-        );
-        println!(
-            "{} {}: {median:e}, {most:e}",
-            program.name(),
-            gradient.name()
-        );
-        assert!(
-            median < 1e-6 && most < 1e-3,
-            "{}: {median:e}, {most:e}",
-            program.name()
-        );
+        let cases = Weighted::new::<M>(&program, self.0);
+        let gradients = cases.inputs.iter().map(|inputs| {
+            let got = cases.gradient.run(inputs, Rounding::Once);
+            let results = cases.function.run(inputs, Rounding::Once);
+            assert_eq!(got[..results.len()], results, "the results");
+            got
+        });
+        let name = format!("{} {}", program.name(), cases.gradient.name());
+        cases.check(&gradients.collect::<Vec<_>>(), &name);
     }
+}
+
+#[test]
+fn gradients_of_materials_are_those_of_differences() {
+    every_model(Differences(Call::Material));
 }
 
 #[test]

@@ -360,6 +360,44 @@ fn from_hexadecimal(literal: &str) -> f64 {
     sign * f64::from(all) * f64::from(exponent - places).exp2()
 }
 
+#[derive(Clone, Copy)]
+struct Comments;
+
+impl Visitor for Comments {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        let program = with_gradients::<M>(Target::Exact);
+        for function in program.functions() {
+            let graph = function.graph();
+            for place in function.schedule() {
+                let (name, call) = (program.name(), function.name());
+                let stage = graph.origin(place).stage;
+                assert!(
+                    stage.is_some(),
+                    "{name} {call}: an operation without a stage"
+                );
+            }
+        }
+        for language in Language::ALL {
+            let text = print(&program, language);
+            let comments = text.lines().filter(|line| line.starts_with("    // "));
+            let is_place = |line: &str| line.contains(".rs");
+            assert!(
+                !comments.clone().any(is_place),
+                "{language:?}: a place in Rust"
+            );
+            assert!(comments.count() > 20, "{language:?}: comments");
+        }
+    }
+}
+
+/// Every operation of every model stands below a sentence that says what it computes.
+#[test]
+fn comments_are_in_the_words_of_the_models() {
+    every_model(Comments);
+}
+
 /// Code that uploads numbers notices another layout.
 #[test]
 fn the_layout_has_a_version() {
@@ -389,13 +427,6 @@ fn the_layout_has_a_version() {
         assert!(
             text.contains(&format!("{:#010x}u", program.layout())),
             "{language:?}"
-        );
-        let comments = text
-            .lines()
-            .filter(|line| line.starts_with("    // kajiya_kay.rs:"));
-        assert!(
-            comments.count() > 5,
-            "{language:?}: the source of the model is named"
         );
     }
     let called: Vec<&str> = program.functions().iter().map(Function::name).collect();

@@ -8,4 +8,5 @@ mod material;
 mod operations;
 mod records;
 mod support;
+mod traps;
 mod vulkan;

@@ -1,8 +1,10 @@
 //! Shaders on a Vulkan driver: the bits of one lane where arithmetic keeps its order, its accuracy where it may not.
 
+use crate::gradients::Weighted;
 use crate::languages::{compile_glsl, tool, write_words};
-use crate::support::{Case, case_count, differing, every_model};
-use hairis_shaders::{Call, Function, Language, Program, Rounding, Target, driver, print, spirv};
+use crate::support::{Case, case_count, differing, every_model, same};
+use hairis_shaders::driver as shader_driver;
+use hairis_shaders::{Call, Function, Language, Program, Rounding, Target, print, spirv};
 use hairis_variants::{Registered, Visitor};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -65,7 +67,13 @@ impl Driver {
 }
 
 /// Calls whose results are compared: those of a shading point are parts of them.
-const CALLS: [Call; 2] = [Call::EvalHit, Call::SampleHit];
+const CALLS: [Call; 3] = [Call::EvalHit, Call::SampleHit, Call::Material];
+
+/// The number, 0 without its sign: drivers may lose it, as `NoContraction` does not keep it. No constant of
+/// a material and no derivative has a meaning that depends on it.
+fn unsigned(x: f32) -> f32 {
+    if x == 0.0 { 0.0 } else { x }
+}
 
 struct Kept;
 
@@ -88,8 +96,12 @@ impl Visitor for &Kept {
                     Target::Exact => case.results(call),
                     _ => function.run(&case.arguments(call), Rounding::Twice),
                 });
-                let expected: Vec<_> = expected.collect();
-                let got = driver.run(&module, call.name(), function, &inputs);
+                let compared = |numbers: Vec<f32>| match call {
+                    Call::Material => numbers.into_iter().map(unsigned).collect(),
+                    _ => numbers,
+                };
+                let expected: Vec<_> = expected.map(compared).collect();
+                let got = compared(driver.run(&module, call.name(), function, &inputs));
                 let count = differing(function, &got, &expected);
                 println!(
                     "{} {} {target:?}: {count} of {} differ",
@@ -102,7 +114,7 @@ impl Visitor for &Kept {
                     let mut one = program.clone();
                     one.keep(vec![function.clone()]);
                     if let Some(module) = compile_glsl(&one, driver.dir.path()) {
-                        let got = driver.run(&module, "main", function, &inputs);
+                        let got = compared(driver.run(&module, "main", function, &inputs));
                         let count = differing(function, &got, &expected);
                         assert_eq!(count, 0, "{} {} in GLSL", program.name(), call.name());
                     }
@@ -175,7 +187,7 @@ impl Visitor for &Plain {
             let mut program = Program::of::<M>(target);
             let calls = CALLS.map(|call| program.function(call).clone());
             program.keep(calls.to_vec());
-            let source = print(&program, Language::Wgsl) + &driver(&program, Language::Wgsl);
+            let source = print(&program, Language::Wgsl) + &shader_driver(&program, Language::Wgsl);
             let module = vulkan.dir.path().join("module.spv");
             write_words(
                 &module,
@@ -222,4 +234,59 @@ impl Visitor for &Plain {
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn plain_shaders_have_the_accuracy_of_one_lane() {
     every_model(&Plain);
+}
+
+struct Gradients;
+
+impl Visitor for &Gradients {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        let Some(driver) = Driver::new() else { return };
+        let module = driver.dir.path().join("module.spv");
+        for target in [Target::Exact, Target::Gpu] {
+            let mut program = Program::of::<M>(target);
+            let cases =
+                [Call::Material, Call::EvalHit].map(|call| Weighted::new::<M>(&program, call));
+            program.keep(cases.each_ref().map(|cases| cases.gradient.clone()).into());
+            let run = |words: &[u32], cases: &Weighted| {
+                write_words(&module, words);
+                let (gradient, inputs) = (&cases.gradient, cases.all.concat());
+                driver.run(&module, gradient.name(), gradient, &inputs)
+            };
+            let kept = spirv::module(&program).expect("naga accepts it");
+            let source = print(&program, Language::Wgsl) + &shader_driver(&program, Language::Wgsl);
+            let plain = spirv::translate(&source).expect("naga accepts it");
+            for cases in &cases {
+                let gradient = &cases.gradient;
+                let name = format!("{} {} {target:?}", program.name(), gradient.name());
+                let expected = cases.all.iter();
+                let expected: Vec<_> = expected
+                    .map(|inputs| gradient.run(inputs, Rounding::Twice))
+                    .map(|results| results.into_iter().map(unsigned).collect::<Vec<_>>())
+                    .collect();
+                let got: Vec<_> = run(&kept, cases).into_iter().map(unsigned).collect();
+                let count = differing(gradient, &got, &expected);
+                if count > 0 {
+                    let places: Vec<_> = gradient.output().places().collect();
+                    for (at, (a, b)) in got.iter().zip(expected.iter().flatten()).enumerate() {
+                        if !same(*a, *b) {
+                            println!("{name}: {} is {a}, not {b}", places[at % places.len()]);
+                            break;
+                        }
+                    }
+                }
+                assert_eq!(count, 0, "{name}: gradients that differ from the graph's");
+                let got = run(&plain, cases);
+                let got = got.chunks(gradient.output().len()).map(<[f32]>::to_vec);
+                cases.check(&got.collect::<Vec<_>>(), &format!("{name} in WGSL"));
+            }
+        }
+    }
+}
+
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn gradients_of_shaders_are_those_of_differences() {
+    every_model(&Gradients);
 }

@@ -78,6 +78,7 @@ impl<L: Lanes<Stored = L>> ChiangMaterial<L> {
         sigma_a: [L; 3],
         small_angle: L::Mask,
     ) -> Self {
+        L::stage("widths of the lobes by the roughnesses");
         let (c, one) = (W::constant, W::constant(1.0));
         let (v, s) = (
             params::variance(W::of(beta_m)),
@@ -88,7 +89,9 @@ impl<L: Lanes<Stored = L>> ChiangMaterial<L> {
         let variance = [v, c(0.25) * v, c(4.0) * v, c(4.0) * v];
         let cut = variance.map(|v| (c(2.0) / v).one_less_exp());
         let turn = [s * kept, s * kept, s * kept, c(core::f64::consts::TAU)];
+        L::stage("shift of each lobe by the tilt of the scales");
         let shift = params::shifts(W::of(tilt), index, small_angle).map(W::sin_cos);
+        L::stage("normalisation of the lobes");
         let widths = ChiangWidths {
             variance: variance.map(W::rounded),
             inv_variance: variance.map(|v| (one / v).rounded()),
@@ -193,7 +196,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         vector.z * inv_cos_o,
     ];
 
-    // The angles about the fibre: of the hit, from its normal to wo, and of the ray inside.
+    L::stage("angles about the fibre: of the hit, from its normal to wo, and of the ray inside");
     let sin_gamma_o = hit.h;
     let cos_gamma_o = zero.max((one - sin_gamma_o) * (one + sin_gamma_o)).sqrt();
     let [twice_eta, eta_sq, eta_sq_less_one] = lanes3(&m.eta);
@@ -207,9 +210,10 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     let k = cos_hit.mul_add(cos_hit, eta_sq_less_one).sqrt();
     let cos_gamma_t = L::select(straight, cos_gamma_o, (k * inv_inside).min(one));
 
-    // Attenuation.
+    L::stage("length of a passage, and Fresnel's reflectance");
     let path_length = twice_eta * cos_gamma_t * inv_inside;
     let [f, passed] = fresnel(cos_hit, k, eta_sq, eta_sq_less_one);
+    L::stage("attenuation of each lobe in each channel");
     let mut attenuation = [f.store(); 12];
     let mut channel = 0;
     while channel < 3 {
@@ -224,7 +228,8 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         channel += 1;
     }
 
-    // Azimuths: wo's turned by -2 gamma_o, and for each passage by pi + 2 gamma_t.
+    L::stage("azimuth of each lobe");
+    // Wo's turned by -2 gamma_o, and for each passage by pi + 2 gamma_t.
     let back = product([cos_gamma_o, -sin_gamma_o], [cos_gamma_o, -sin_gamma_o]);
     let passage = product([cos_gamma_t, sin_gamma_t], [cos_gamma_t, sin_gamma_t]);
     let passage = [-passage[0], -passage[1]];
@@ -241,7 +246,8 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         .mul_add(v, w * w)
         .mul_add(Four::splat(-0.5), Four::splat(1.5));
 
-    // Cones: theta_o less the shift; past the pole it folds back.
+    L::stage("cone of each lobe: theta_o less the shift");
+    // Past the pole it folds back.
     let (sin, cos) = (four(&m.sin_shift), four(&m.cos_shift));
     let sin_cone = Four::difference_of_products(same(sin_o), cos, same(cos_o), sin);
     let cos_cone = Four::difference_of_products(same(cos_o), cos, same(-sin_o), sin).abs();

@@ -47,6 +47,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
     // 1 / sqrt(cos theta_i), which the tails of the Bessel functions share.
     let inv_root_i = L::quotient(one, cos_i.sqrt());
 
+    L::stage("azimuth: distance from that of R, TT and TRT");
     // |delta| / 2 of R, TT and TRT, from the tangent of half of it or of what it lacks of an eighth turn. The rest has no
     // azimuth: TRT's is in its place, and costs nothing.
     let [v, w] = [&prepared.azimuth_v, &prepared.azimuth_w];
@@ -68,6 +69,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
     );
     let exponent = half * same(m.four_inv_scale.lanes());
 
+    L::stage("azimuth: logistic of each distance");
     // (1 + e)^-2, by one division.
     let tail = Four::splat(1.0) + gaussian(exponent);
     let [a, b, d, _] = apart(tail * tail);
@@ -77,6 +79,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
     let Pair(first, Pair(trt, _)) = exponent;
     let exponent = Pair(first, Pair(trt, zero));
 
+    L::stage("inclination: distance from each lobe's cone, and the Bessel function");
     // The chord between theta_i and -theta' on the unit circle, squared: 4 sin^2 of half their angle. Of no half angles: their
     // roundings would count twice, and those of the cosines vanish at the poles with them.
     let (across, along) = (
@@ -96,6 +99,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
         polynomial(above * above, TAIL) * root,
     );
     let sum = chord_sq.mul_add(four(&m.inv_variance), exponent) + Four::keep(small, x + x);
+    L::stage("density of each lobe: M N");
     // Alone: in vectors of three lobes, what nobody uses overflows.
     let densities = gaussian(sum).alone() * bessel * (logistic * four(&m.norm));
     (apart(densities), inv_root_i * inv_root_i)

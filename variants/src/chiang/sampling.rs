@@ -17,7 +17,8 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
     let (zero, one, two) = (c(0.0), c(1.0), c(2.0));
     let m = &prepared.widths;
 
-    // Inclination (d'Eon 2013): 1 less the cosine of the angle from the cone; the turn's cosine is even.
+    L::stage("inclination: a point about the lobe's cone");
+    // After d'Eon 2013: 1 less the cosine of the angle from the cone; the turn's cosine is even.
     let cut = C::look_up(&m.cut, lobe);
     let by = C::look_up(&m.variance, lobe) * -LN_2;
     let drop = zero.max((log2_one_plus(-(xi[1] * cut)) * by).min(two));
@@ -33,7 +34,8 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
     let plane = along.mul_add(cos_cone, towards * sin_cone);
     let cos_i = plane.mul_add(plane, across * across).sqrt();
 
-    // Azimuth: the trimmed logistic by inversion; that of the rest is uniform.
+    L::stage("azimuth: the trimmed logistic by inversion");
+    // The trimmed logistic by inversion; that of the rest is uniform.
     let kept = m.kept.lanes();
     let edge = (one - kept) * 0.5;
     let ratio = L::quotient(xi[0].mul_add(kept, edge), (one - xi[0]).mul_add(kept, edge));
@@ -43,6 +45,7 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
     let half = L::select(lobe.equals(3), uniform, logistic)
         .min(half_turn)
         .max(-half_turn);
+    L::stage("direction");
     let (sin, cos) = sin_cos_half_turn(half);
     let (sin_x, cos_x) = ((sin + sin) * cos, cos.mul_sub(cos, sin * sin));
     let (v, w) = (

@@ -120,6 +120,9 @@ pub(super) fn integrate_bands<
     inv_beta: [L; 3],
     theta_o: [L; 2],
 ) -> BandCdf<L, N> {
+    L::stage(
+        "integrals of the lobes' bells over the bands of inclination, from both poles to the middle",
+    );
     let none = L::splat(0.0);
     let (quarter_o, shift, inv_beta) =
         (P::of(quarter_o), P::of_lobes(shift), P::of_lobes(inv_beta));

@@ -39,6 +39,7 @@ pub(super) fn extent<B: MatchedBell, L: Lanes, C: Broadcast<L>>(
     hair: &HairLobes<C>,
     azimuth_mass: [L; 2],
 ) -> [L; 4] {
+    L::stage("integral of each lobe without its colour, per unit of its inclination's integral");
     // dtheta_i is two widths for each of x; the azimuth of R and TRT-g has an area of 4, and bells have two sides.
     let unit = L::splat(2.0 * B::UNIT);
     let [r, tt, trt] = [
@@ -65,6 +66,7 @@ impl<L: Lanes<Stored = L> + Broadcast<L>> MatchedMaterial<L> {
             (zero, pi * inv_gamma_tt),
             (-phi_g * inv_gamma_g, (pi - phi_g) * inv_gamma_g),
         ];
+        L::stage("sampler: integrals of the azimuths' bells");
         let azimuth_origin = ranges.map(|(lo, hi)| B::origin(lo, hi));
         let from_to =
             |i: usize| [ranges[i].0, ranges[i].1].map(|x| B::integral(azimuth_origin[i], x));
@@ -91,6 +93,9 @@ impl<L: Lanes<Stored = L> + Broadcast<L>> MatchedMaterial<L> {
 fn intensity<W: Precision>(d: &HairDesc<W::Lane>) -> [[W::Lane; 3]; 4] {
     let (c, zero) = (W::constant, W::constant(0.0));
     let ([r, tt, trt], factors) = intensities::<W>(d);
+    <W::Lane as Lanes>::stage(
+        "intensity of each lobe in each channel, to the scale of the largest mean",
+    );
     let colors = [r, tt, trt, trt];
     let all: [[W; 3]; 4] = core::array::from_fn(|lobe| colors[lobe].map(|x| x * factors[lobe]));
     let mean = all.map(|[r, g, b]| (r + g + b) / c(3.0));

@@ -82,6 +82,7 @@ where
         lanes3(&hair.inv_beta),
     );
     let cdf = integrate_bands::<B, L, P, K, N>(view.quarter_o.lanes(), shift, inv_beta, theta_o);
+    L::stage("probability of each lobe: its integral");
     // The glints share the inclination of TRT.
     let [r, tt, trt] = cdf.area;
     let total = [r, tt, trt, trt];
@@ -179,6 +180,7 @@ impl<C, const N: usize> MatchedPrepared<C, N> {
     where
         C: Broadcast<L>,
     {
+        L::stage("constant of the band in which wi lies");
         let across = sin_theta_i.abs();
         let below = sin_theta_i.lt(L::splat(0.0));
         let mut height = L::select(below, self.height[0].lanes(), self.height[N - 1].lanes());
@@ -206,6 +208,7 @@ impl<C, const N: usize> MatchedPrepared<C, N> {
     where
         C: Broadcast<L>,
     {
+        L::stage("normalisation of each lobe alone");
         let one = L::splat(1.0);
         let azimuth_mass = [self.azimuth_mass[0].lanes(), self.azimuth_mass[1].lanes()];
         let mut by_extent = extent::<B, L, C>(&self.view.lobes, azimuth_mass);

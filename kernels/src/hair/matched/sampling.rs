@@ -19,9 +19,11 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let c = L::splat;
     let one = c(1.0);
     let (view, hair) = (&prepared.view, &prepared.view.lobes);
+    L::stage("lobe that xi.x selects");
     let choice = L::Index::search(xi[0], lanes3(&prepared.bounds), 3);
 
-    // Inclination: the number's share of the integral of M W, from the nearer pole. As a function of it the integral of M is the
+    L::stage("integral of the lobe's inclination at xi.y");
+    // The number's share of the integral of M W, from the nearer pole. As a function of it the integral of M is the
     // least of the bands' lines: outwards they are steeper. Above the middle it is the negative integral.
     let total = C::look_up_three(&prepared.area, choice);
     let area = xi[1] * total;
@@ -45,7 +47,8 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     // The second operand wins over NaN.
     let integral = L::select(lower, integral, -integral).max(least).min(most);
 
-    // Azimuth: TT's runs from its centre outwards, that of a glint from phi = 0.
+    L::stage("integral of the lobe's azimuth at xi.z");
+    // TT's runs from its centre outwards, that of a glint from phi = 0.
     let folded = FoldedXi::of(xi[2]);
     let is_glint = choice.equals(3);
     let share = L::select(is_glint, one - folded.across, folded.across);
@@ -55,7 +58,7 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
         C::look_up_half(&prepared.azimuth_from, choice),
     );
 
-    // Side by side.
+    L::stage("inclination and azimuth at these integrals");
     let origin = Pair(
         C::look_up_three(&prepared.origin, choice),
         C::look_up_half(&prepared.azimuth_origin, choice),

@@ -182,7 +182,7 @@ pub(super) fn head(program: &Program, language: Language) -> String {
          // wo is towards the viewer, wi towards the light; h is the offset of the hit across the fibre, from -1 to 1.\n\
          // Outgoing radiance is the integral of value * cos theta_i * incoming radiance over wi, cos theta_i = \
          sqrt(wi.y^2 + wi.z^2);\n// weight is value * cos theta_i / pdf. Colours are linear RGB.\n//\n\
-         // Comments in functions name the source of the model that the operations below them come from.\n\n",
+         // Comments in functions say what the operations below them compute.\n\n",
         env!("CARGO_PKG_VERSION"),
         notes(language, program.target()),
     );
