@@ -167,7 +167,7 @@ unsafe fn run_all(materials: *const RawMaterial, index: Option<&[u32]>, rows: &R
     }
 }
 
-/// Where to write a column; null for one that the host leaves out.
+/// Address of a column to write; null for one that the host leaves out.
 fn address(column: &mut [f32]) -> *mut f32 {
     if column.is_empty() {
         ptr::null_mut()
