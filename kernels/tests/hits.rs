@@ -183,7 +183,11 @@ fn rows_come_in_groups_of_one_index_and_go_back_to_their_places() {
         // Some indices follow each other, others do not; they spread over the whole range of a `u32`.
         let index: Vec<u32> = (0..len)
             .map(|i| if i % 97 < 30 { i / 30 } else { i * i })
-            .map(|i| ((i % indices) as u32).wrapping_mul(0x0101_0101))
+            .map(|i| {
+                u32::try_from(i % indices)
+                    .unwrap()
+                    .wrapping_mul(0x0101_0101)
+            })
             .collect();
         for mixed in [1, 8] {
             let (mut out, mut left_out) = (vec![f32::NAN; len], []);
@@ -240,7 +244,7 @@ fn hits_of_many_materials_have_the_bits_of_their_own() {
     for level in Level::available() {
         let materials = presets.map(|hair| Material::new(&model, &hair).with_level(level));
         for period in [6, 3, 1] {
-            let index: Vec<u32> = (0..600).map(|i| (i * i / 7 % period) as u32).collect();
+            let index: Vec<u32> = (0..600).map(|i| i * i / 7 % period).collect();
             let (mut pdf, mut own) = (vec![0.0; 600], vec![0.0; 600]);
             let out = EvalColumns {
                 pdf: Some(&mut pdf),
