@@ -22,6 +22,7 @@ for features in '' few std,few; do
   echo "hairis-capi with '$features'"
 done
 check hairis-shaders '' spirv
+check hairis-gradients '' any
 check hairis-instruments '' parquet png parquet,png
 check hairis-harness '' parquet png spirv parquet,png
 

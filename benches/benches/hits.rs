@@ -1,8 +1,9 @@
 //! Time of hits with `Conserving` over those without, of one hit in one call over two calls, of evaluating and sampling at once over
 //! doing both, and of making a material.
 //!
-//! `cargo bench -p hairis-benches --bench hits` prints a record. Both of a pair are called in turns, stretch by stretch; a ratio is
-//! the median of those of all turns.
+//! `cargo bench -p hairis-benches --bench hits` prints a record.
+
+mod turns;
 
 use core::array::from_fn;
 use core::hint::black_box;
@@ -14,19 +15,9 @@ use hairis::{Conserving, Gaussian, HairParams, Matched, Material, Material8, Pub
 use hairis_benches::cpu;
 use hairis_benches::inputs::{Column, DIRECTIONS, Inputs, arrays, packets};
 use hairis_variants::Cauchy;
-use std::env;
-use std::time::Instant;
-
-/// Turns of a pair.
-const TURNS: usize = 301;
 
 fn main() {
-    // Cargo runs benches as tests, too.
-    let turns = if env::args().any(|word| word == "--bench") {
-        TURNS
-    } else {
-        1
-    };
+    let turns = turns::turns();
     println!("# CPU: {}", cpu::name());
     println!("# compiled for {}", Level::portable());
     println!("model,call,level,ns,base_ns,ratio");
@@ -46,18 +37,6 @@ fn main() {
 #[inline(always)]
 fn keep<T>(result: T) {
     black_box(result);
-}
-
-/// Time of a call, ns.
-fn stretch(call: &mut impl FnMut()) -> f64 {
-    let start = Instant::now();
-    call();
-    start.elapsed().as_secs_f64() * 1e9
-}
-
-fn median(times: &mut [f64]) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times[times.len() / 2]
 }
 
 /// Columns of a call and its results.
@@ -120,40 +99,10 @@ struct Run<'a> {
 
 impl Run<'_> {
     /// Times two calls in turns and prints a row, per each of so many hits.
-    fn pair(
-        self,
-        call: &str,
-        level: &str,
-        hits: usize,
-        mut ours: impl FnMut(),
-        mut base: impl FnMut(),
-    ) {
-        let [mut a, mut b, mut ratio] = [vec![], vec![], vec![]];
-        for turn in 0..=self.turns {
-            let (first, second);
-            // Whichever is first changes from turn to turn.
-            if turn % 2 == 0 {
-                (first, second) = (stretch(&mut ours), stretch(&mut base));
-            } else {
-                let base = stretch(&mut base);
-                (first, second) = (stretch(&mut ours), base);
-            }
-            // The first turn warms up.
-            if turn > 0 {
-                a.push(first);
-                b.push(second);
-                ratio.push(first / second);
-            }
-        }
-        #[expect(clippy::cast_precision_loss, reason = "some thousand")]
-        let per = |ns: f64| ns / hits as f64;
-        println!(
-            "{},{call},{level},{:.2},{:.2},{:.3}",
-            self.model,
-            per(median(&mut a)),
-            per(median(&mut b)),
-            median(&mut ratio)
-        );
+    fn pair(self, call: &str, level: &str, hits: usize, ours: impl FnMut(), base: impl FnMut()) {
+        let [ours, base, ratio] = turns::pair(self.turns, hits, ours, base);
+        let model = self.model;
+        println!("{model},{call},{level},{ours:.2},{base:.2},{ratio:.3}");
     }
 
     fn all<M: Model<Params = HairParams>>(self, model: M) {

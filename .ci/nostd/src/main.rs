@@ -15,9 +15,10 @@ mod numbers;
 mod system;
 
 use glam::Vec3;
-use hairis::columns::EvalColumns;
+use hairis::columns::{EvalColumns, HitColumns};
 use hairis::model::Model;
 use hairis::{Gaussian, HairParams, Material, Published, Vec3x8, random};
+use hairis_gradients::{GradColumns, Gradients, Weights};
 use hairis_variants::Cauchy;
 use numbers::Numbers;
 
@@ -97,6 +98,52 @@ fn check<M: Model<Params = HairParams>>(model: &M, first: i32) -> Result<(), i32
     Ok(())
 }
 
+/// Derivatives of hits: S has the bits of the slice call.
+fn check_gradients() -> Result<(), i32> {
+    type Model = Published<Gaussian>;
+    let hair = HairParams::brown();
+    let columns: [[f32; 3]; 6] = [
+        [0.6, 0.0, -0.28],
+        [0.8, 1.0, 0.0],
+        [0.0, 0.0, 0.96],
+        [-0.6, 0.0, 0.0],
+        [0.8, 0.6, -0.6],
+        [0.0, 0.8, 0.8],
+    ];
+    let [u, v, w, x, y, z] = columns.each_ref().map(|column| &column[..]);
+    let hits = HitColumns {
+        wo: [u, v, w],
+        h: None,
+    };
+    let [mut values, mut expected] = [[[0.0; 3]; 3]; 2];
+    let mut d_material = [0.0; Gradients::<Model>::NUMBERS];
+    let weights = Weights {
+        value: Some([&[1.0; 3]; 3]),
+        pdf: None,
+    };
+    let out = GradColumns {
+        value: Some(values.each_mut().map(|column| &mut column[..])),
+        d_material: Some(&mut d_material),
+        ..GradColumns::default()
+    };
+    let gradients = Gradients::<Model>::new(&hair);
+    let done = gradients.eval_grad(hits, [x, y, z], weights, out);
+    done.map_err(|_| 31)?;
+    let out = EvalColumns {
+        value: Some(expected.each_mut().map(|column| &mut column[..])),
+        pdf: None,
+    };
+    let material = Material::new(&Published(Gaussian), &hair);
+    let done = material.eval_hits(hits, [x, y, z], out);
+    done.map_err(|_| 32)?;
+    let by_intensity = gradients.by_parameters(&d_material).numbers("i_r")[0];
+    if values == expected && by_intensity > 0.0 {
+        Ok(())
+    } else {
+        Err(33)
+    }
+}
+
 /// A function of its own, so that both factors are in registers.
 #[cfg(target_arch = "s390x")]
 #[inline(never)]
@@ -112,7 +159,8 @@ fn start() -> i32 {
     }
     #[cfg(feature = "neg-alloc")]
     drop(alloc::boxed::Box::new(hairis::simd::Level::detect()));
-    match check(&Published(Gaussian), 10).and_then(|()| check(&Cauchy::PAPER.model(), 20)) {
+    let models = check(&Published(Gaussian), 10).and_then(|()| check(&Cauchy::PAPER.model(), 20));
+    match models.and_then(|()| check_gradients()) {
         Ok(()) => {
             #[cfg(feature = "bits")]
             hashes::print();

@@ -1,0 +1,239 @@
+//! Arguments of calls: slices of one length, which is checked.
+
+use crate::generated::{ARGUMENTS, INPUTS, RESULTS};
+use core::fmt;
+use hairis::columns::{HitColumns, LengthError};
+use hairis::f32x8;
+
+/// Refusal of a call, which did nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum GradError {
+    /// A slice differs in length from the first.
+    Length(LengthError),
+    /// Derivatives by the material have another count than its numbers.
+    Numbers {
+        /// Name of the slice at fault.
+        field: &'static str,
+        /// Its length.
+        len: usize,
+        /// Count of the numbers of the material.
+        numbers: usize,
+    },
+}
+
+impl fmt::Display for GradError {
+    #[inline]
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Length(error) => error.fmt(f),
+            Self::Numbers {
+                field,
+                len,
+                numbers,
+            } => {
+                write!(
+                    f,
+                    "{field} must have {numbers} entries, one per number of the material, got {len}"
+                )
+            }
+        }
+    }
+}
+
+impl core::error::Error for GradError {}
+
+impl From<LengthError> for GradError {
+    #[inline]
+    fn from(error: LengthError) -> Self {
+        Self::Length(error)
+    }
+}
+
+/// Weights of the results, one entry per hit: the derivative is that of the sum of `weight * result` over results and hits. Results
+/// without weights have weight 0.
+///
+/// Reverse mode of automatic differentiation calls them cotangents or adjoints: of a loss, they are its derivatives by the results.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Weights<'a> {
+    /// Weights of S, red, green and blue.
+    pub value: Option<[&'a [f32]; 3]>,
+    /// Weights of the density: [`eval_grad`](crate::Gradients::eval_grad), which computes none, ignores them.
+    pub pdf: Option<&'a [f32]>,
+}
+
+/// Results and derivatives. Columns that are `None` are not written.
+#[derive(Debug, Default)]
+pub struct GradColumns<'a, 'b> {
+    /// S, red, green and blue, per steradian: one entry per hit, as the following columns.
+    pub value: Option<[&'a mut [f32]; 3]>,
+    /// Density, per steradian; 0 from [`eval_grad`](crate::Gradients::eval_grad).
+    pub pdf: Option<&'a mut [f32]>,
+    /// Derivative by `wo`: u, v, w.
+    pub d_wo: Option<[&'a mut [f32]; 3]>,
+    /// Derivative by the offset `h`: 0 outside `[-1, 1]`, and for models of the far field.
+    pub d_h: Option<&'a mut [f32]>,
+    /// Derivative by `wi`: u, v, w.
+    pub d_wi: Option<[&'a mut [f32]; 3]>,
+    /// Derivative by each number of the material, summed over the hits: [`NUMBERS`](crate::Gradients::NUMBERS) entries, to which the call
+    /// adds. [`by_parameters`](crate::Gradients::by_parameters) makes derivatives by parameters of them.
+    ///
+    /// Each of eight lanes sums 512 hits in single precision, and the sums of lanes are added in double precision, from the
+    /// first hit on: the sum depends on whether the level fuses, and on nothing else of the machine.
+    pub d_material: Option<&'a mut [f64]>,
+    /// Derivative by each number of the material per hit: as many columns, each with an entry per hit.
+    pub d_material_of_hits: Option<&'a mut [&'b mut [f32]]>,
+}
+
+/// Columns of a call in the order of the generated rows, all of one length; those that are left out are empty.
+#[derive(Debug)]
+pub(crate) struct Call<'a, 'b> {
+    pub(crate) len: usize,
+    inputs: [&'a [f32]; INPUTS],
+    outputs: [&'a mut [f32]; RESULTS + ARGUMENTS],
+    pub(crate) sums: &'a mut [f64],
+    each: &'a mut [&'b mut [f32]],
+}
+
+/// Names of the inputs, in order.
+const INPUT_NAMES: [&str; INPUTS] = [
+    "wo.u",
+    "wo.v",
+    "wo.w",
+    "h",
+    "wi.u",
+    "wi.v",
+    "wi.w",
+    "weights.value.r",
+    "weights.value.g",
+    "weights.value.b",
+    "weights.pdf",
+];
+/// Names of the outputs, in order.
+const OUTPUT_NAMES: [&str; RESULTS + ARGUMENTS] = [
+    "value.r", "value.g", "value.b", "pdf", "d_wo.u", "d_wo.v", "d_wo.w", "d_h", "d_wi.u",
+    "d_wi.v", "d_wi.w",
+];
+
+fn three<T>(columns: Option<[T; 3]>) -> [Option<T>; 3] {
+    columns.map_or([None, None, None], |columns| columns.map(Some))
+}
+
+fn check(field: &'static str, len: usize, expected: usize) -> Result<(), LengthError> {
+    if len == expected {
+        return Ok(());
+    }
+    Err(LengthError {
+        field,
+        len,
+        expected,
+    })
+}
+
+impl<'a, 'b> Call<'a, 'b> {
+    /// The columns, if they are of one length.
+    pub(crate) fn new(
+        hits: HitColumns<'a>,
+        wi: [&'a [f32]; 3],
+        weights: Weights<'a>,
+        out: GradColumns<'a, 'b>,
+        numbers: usize,
+    ) -> Result<Self, GradError> {
+        let len = hits.wo[0].len();
+        let ([ou, ov, ow], [iu, iv, iw]) = (three(Some(hits.wo)), three(Some(wi)));
+        let [wr, wg, wb] = three(weights.value);
+        let inputs = [ou, ov, ow, hits.h, iu, iv, iw, wr, wg, wb, weights.pdf];
+        for (name, column) in INPUT_NAMES.into_iter().zip(inputs) {
+            check(name, column.map_or(len, <[f32]>::len), len)?;
+        }
+        let ([r, g, b], [u, v, w], [x, y, z]) =
+            (three(out.value), three(out.d_wo), three(out.d_wi));
+        let outputs = [r, g, b, out.pdf, u, v, w, out.d_h, x, y, z];
+        for (name, column) in OUTPUT_NAMES.into_iter().zip(&outputs) {
+            check(name, column.as_deref().map_or(len, <[f32]>::len), len)?;
+        }
+        let (sums, each) = (out.d_material, out.d_material_of_hits);
+        for (field, count) in [
+            ("d_material", sums.as_deref().map(<[f64]>::len)),
+            (
+                "d_material_of_hits",
+                each.as_deref().map(<[&mut [f32]]>::len),
+            ),
+        ] {
+            if let Some(len) = count.filter(|count| *count != numbers) {
+                return Err(GradError::Numbers {
+                    field,
+                    len,
+                    numbers,
+                });
+            }
+        }
+        let (sums, each) = (sums.unwrap_or_default(), each.unwrap_or_default());
+        for column in each.iter() {
+            check("d_material_of_hits[..]", column.len(), len)?;
+        }
+        // By numbers that are not read.
+        each.iter_mut().for_each(|column| column.fill(0.0));
+        Ok(Self {
+            len,
+            inputs: inputs.map(Option::unwrap_or_default),
+            outputs: outputs.map(Option::unwrap_or_default),
+            sums,
+            each,
+        })
+    }
+
+    /// Eight hits from `at` on. Lanes past the last hit repeat it with weights of 0.
+    #[inline(always)]
+    pub(crate) fn read(&self, at: usize, to: &mut [f32x8; INPUTS]) {
+        let weights = RESULTS + 3;
+        for (place, (column, to)) in self.inputs.iter().zip(to).enumerate() {
+            let column = column.get(at..).unwrap_or_default();
+            *to = match column.first_chunk::<8>() {
+                Some(eight) => f32x8::new(*eight),
+                None => {
+                    let fill = if place < weights { column.last() } else { None };
+                    let mut lanes = [fill.copied().unwrap_or(0.0); 8];
+                    for (lane, number) in lanes.iter_mut().zip(column) {
+                        *lane = *number;
+                    }
+                    f32x8::new(lanes)
+                }
+            };
+        }
+    }
+
+    /// Writes the rows of eight hits from `at` on: results, derivatives by numbers of the material, of which each has its place,
+    /// and derivatives by the hit.
+    #[inline(always)]
+    pub(crate) fn write<const N: usize, const R: usize>(
+        &mut self,
+        at: usize,
+        places: &[usize],
+        rows: &[f32x8; R],
+    ) {
+        for (place, column) in self.outputs.iter_mut().enumerate() {
+            let row = if place < RESULTS { place } else { N + place };
+            write(rows[row], column.get_mut(at..).unwrap_or_default());
+        }
+        if self.each.is_empty() {
+            return;
+        }
+        for (place, row) in places.iter().zip(&rows[RESULTS..]) {
+            write(*row, self.each[*place].get_mut(at..).unwrap_or_default());
+        }
+    }
+}
+
+/// Writes as many lanes as there is room for.
+#[inline(always)]
+fn write(row: f32x8, to: &mut [f32]) {
+    match to.first_chunk_mut::<8>() {
+        Some(eight) => *eight = row.to_array(),
+        None => {
+            for (number, lane) in to.iter_mut().zip(row.to_array()) {
+                *number = lane;
+            }
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! The handle of a material.
+
+use crate::columns::Call;
+use crate::generated::{Differentiable, sealed};
+use crate::{GradColumns, GradError, Weights};
+use core::fmt;
+use hairis::columns::HitColumns;
+use hairis::simd::Level;
+
+/// Derivatives of a material: made once per material, and called with slices of hits.
+pub struct Gradients<M: Differentiable> {
+    pub(crate) params: M::Params,
+    pub(crate) material: M::Material<f32>,
+    level: Level,
+}
+
+impl<M: Differentiable> Clone for Gradients<M> {
+    #[inline]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<M: Differentiable> Copy for Gradients<M> {}
+
+impl<M: Differentiable> fmt::Debug for Gradients<M> {
+    #[inline]
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Gradients")
+            .field("params", &self.params)
+            .field("level", &self.level)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<M: Differentiable> Gradients<M> {
+    /// Count of the numbers of a material.
+    pub const NUMBERS: usize = M::MATERIAL.len();
+
+    /// Derivatives at these parameters, on the best instruction set of the CPU.
+    #[inline]
+    #[must_use]
+    pub fn new(params: &M::Params) -> Self {
+        Self {
+            params: *params,
+            material: M::MODEL.material(params),
+            level: Level::detect(),
+        }
+    }
+
+    /// Selects another instruction set.
+    #[inline]
+    #[must_use]
+    pub const fn with_level(self, level: Level) -> Self {
+        Self { level, ..self }
+    }
+
+    /// S of many directions, each at a hit of its own, and the derivatives of its weighted sum.
+    ///
+    /// S has the bits of [`Material::eval_hits`](hairis::Material::eval_hits). The crate documents the
+    /// [rules](crate#rules-where-a-model-is-not-smooth) where a model is not smooth.
+    ///
+    /// # Errors
+    ///
+    /// If the columns differ in length, or those of the material are not as many as its numbers; nothing is written then.
+    #[inline]
+    pub fn eval_grad(
+        &self,
+        hits: HitColumns<'_>,
+        wi: [&[f32]; 3],
+        weights: Weights<'_>,
+        out: GradColumns<'_, '_>,
+    ) -> Result<(), GradError> {
+        self.run::<false>(hits, wi, weights, out)
+    }
+
+    /// As [`eval_grad`](Self::eval_grad), with the density and its derivatives: for [`Matched`](hairis::Matched) in a
+    /// multiple of the time.
+    ///
+    /// # Errors
+    ///
+    /// As there.
+    #[inline]
+    pub fn eval_pdf_grad(
+        &self,
+        hits: HitColumns<'_>,
+        wi: [&[f32]; 3],
+        weights: Weights<'_>,
+        out: GradColumns<'_, '_>,
+    ) -> Result<(), GradError> {
+        self.run::<true>(hits, wi, weights, out)
+    }
+
+    #[inline]
+    fn run<const HAS_PDF: bool>(
+        &self,
+        hits: HitColumns<'_>,
+        wi: [&[f32]; 3],
+        weights: Weights<'_>,
+        out: GradColumns<'_, '_>,
+    ) -> Result<(), GradError> {
+        let mut call = Call::new(hits, wi, weights, out, Self::NUMBERS)?;
+        M::run::<HAS_PDF>(sealed::Rows(&mut call), &self.material, self.level);
+        Ok(())
+    }
+}

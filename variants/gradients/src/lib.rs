@@ -1,0 +1,64 @@
+//! Derivatives of the models of hairis at slices of hits: by the parameters of the material, by both directions and by the offset.
+//!
+//! [`Gradients`] is the handle of a material. [`eval_grad`](Gradients::eval_grad) takes a weight per result of each hit, and returns
+//! the derivative of the weighted sum of all results. The reverse pass is generated when this package is built: each model is traced
+//! to a graph ([`hairis-shaders`](https://docs.rs/hairis-shaders)), differentiated, and printed as Rust over lanes. The lanes have
+//! the bits of that graph's interpreter, on every level.
+//!
+//! ```
+//! use hairis::columns::HitColumns;
+//! use hairis::{Gaussian, HairParams, Published};
+//! use hairis_gradients::{GradColumns, Gradients, Weights};
+//!
+//! let hair = Gradients::<Published<Gaussian>>::new(&HairParams::brown());
+//! let (wo, wi) = ([[0.6], [0.8], [0.0]], [[-0.5], [0.0], [0.866_025_4]]);
+//! let hits = HitColumns { wo: wo.each_ref().map(|c| &c[..]), h: None };
+//! // The derivative of the red of S.
+//! let weights = Weights { value: Some([&[1.0], &[0.0], &[0.0]]), pdf: None };
+//! let mut d_material = [0.0; Gradients::<Published<Gaussian>>::NUMBERS];
+//! let out = GradColumns { d_material: Some(&mut d_material), ..GradColumns::default() };
+//! hair.eval_grad(hits, wi.each_ref().map(|c| &c[..]), weights, out)?;
+//! let d_params = hair.by_parameters(&d_material);
+//! assert!(d_params.numbers("i_r")[0] > 0.0 && d_params.numbers("i_r")[1] == 0.0);
+//! # Ok::<(), hairis_gradients::GradError>(())
+//! ```
+//!
+//! # Rules where a model is not smooth
+//!
+//! A model computes some numbers by choice: clamps, masks, minima, signs. Derivatives are those of the branch that is taken:
+//!
+//! | in the model | derivative |
+//! |---|---|
+//! | `min`, `max`, clamps | that of the operand that is returned, and 0 for the other; on a tie that of the second operand, as in the value. Beyond a clamp it is 0: by an offset `h` outside `[-1, 1]`, for example |
+//! | masks and their choices | that of the chosen side; the choice itself is constant, so that a jump between the sides has no derivative |
+//! | rounding to an integer, exponents | 0: steps |
+//! | magnitude, sign | the sign of the argument; at 0 that of the bit of its sign, a subgradient |
+//! | square root at 0 | the root counts as at least 1e-18 |
+//! | seams of the azimuth | that of the side the value is computed on |
+//! | directions along the fibre, non-finite inputs | 0, as the value |
+//! | any other derivative that is infinite or undefined | 0 |
+//!
+//! Directions count as independent coordinates. Those of unit length, within 1e-5, are not normalised: the derivative is right along the
+//! sphere and arbitrary across it, so project it: `d - wi * dot(d, wi)`. The density is that of the model's sampler;
+//! a discarded sample has no derivative, as no sample is drawn here (detached sampling).
+#![no_std]
+#![warn(clippy::missing_inline_in_public_items)]
+
+#[cfg(feature = "any")]
+mod any;
+mod columns;
+mod generated;
+mod gradients;
+mod parameters;
+
+#[cfg(feature = "any")]
+pub use any::AnyGradients;
+pub use columns::{GradColumns, GradError, Weights};
+pub use generated::{Differentiable, Visitor, visit};
+pub use gradients::Gradients;
+
+/// Examples of the package's README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+#[derive(Debug)]
+pub struct Readme;
