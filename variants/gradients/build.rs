@@ -45,8 +45,9 @@ impl Visitor for Print<'_> {
         let Self(id, source) = self;
         let [exact, fused] = [Target::Exact, Target::Fused].map(Program::of::<M>);
         let names: Vec<String> = exact.material().places().collect();
-        let mut module =
-            format!("pub(crate) mod {id:?} {{\npub(crate) const MATERIAL: &[&str] = &{names:?};\n");
+        let mut module = format!(
+            "pub(crate) mod {id:?} {{\nuse super::*;\npub(crate) const MATERIAL: &[&str] = &{names:?};\n"
+        );
         for (call, fields) in [("Value", &["value"][..]), ("ValuePdf", &["value", "pdf"])] {
             let [exact, fused] = [&exact, &fused].map(|program| {
                 let eval = program.function(Call::EvalHit).only(fields);
@@ -77,7 +78,7 @@ impl Visitor for Print<'_> {
             });
             let _ = writeln!(
                 module,
-                "pub(crate) type {call} = super::Body{place};\npub(crate) const {}: &[usize] = &{read:?};",
+                "pub(crate) type {call} = Body{place};\npub(crate) const {}: &[usize] = &{read:?};",
                 if call == "Value" {
                     "VALUE"
                 } else {
@@ -85,9 +86,36 @@ impl Visitor for Print<'_> {
                 }
             );
         }
+        module.push_str(&parameters(&exact));
         source.text.push_str(&module);
         source.text.push_str("}\n");
     }
+}
+
+/// The derivatives by parameters of the weighted sum of a material's numbers, in one lane.
+fn parameters(program: &Program) -> String {
+    let gradient = program.function(Call::Material).gradient();
+    let fields = gradient.output().fields[program.material().fields.len()..].iter();
+    let fields: Vec<_> = fields.map(|field| field.name.as_str()).collect();
+    let gradient = gradient.only(&fields).expect("fields of the result");
+    let (numbers, count) = (program.material().len(), gradient.results().len());
+    let read: Vec<usize> = (0..count).collect();
+    let inputs = Inputs {
+        numbers: count,
+        read: &read,
+    };
+    let mut out = format!(
+        "pub(crate) const PARAMETERS: usize = {count};\npub(crate) fn by_parameters(m: &[f32; {count}], v: &[f32; {numbers}]) \
+         -> [f32; {count}] {{\ntype L = f32;\n"
+    );
+    for place in gradient.schedule() {
+        let operation = operation(&gradient, place, &inputs);
+        let _ = writeln!(out, "let x{place} = {operation};");
+    }
+    let rows = gradient.results().iter();
+    let rows: Vec<_> = rows.map(|row| operand(&gradient, *row, &inputs)).collect();
+    let _ = writeln!(out, "[{}]\n}}", rows.join(", "));
+    out
 }
 
 /// Places of the numbers of a material that any of the functions reads.

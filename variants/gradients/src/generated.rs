@@ -40,8 +40,27 @@ mod models {
 
 /// Numbers with the lower 12 bits cleared. Asked for by lanes that do not fuse.
 #[inline(always)]
-fn upper<L: Lanes<Stored = f32x8>>(x: L) -> L {
-    L::load(&(x.store() & f32x8::splat(f32::from_bits(0xffff_f000))))
+fn upper<L: Lanes<Stored: Upper>>(x: L) -> L {
+    L::load(&x.store().upper())
+}
+
+/// Stored lanes whose bits are taken apart.
+trait Upper {
+    fn upper(self) -> Self;
+}
+
+impl Upper for f32x8 {
+    #[inline(always)]
+    fn upper(self) -> Self {
+        self & Self::splat(f32::from_bits(0xffff_f000))
+    }
+}
+
+impl Upper for f32 {
+    #[inline(always)]
+    fn upper(self) -> Self {
+        Self::from_bits(self.to_bits() & 0xffff_f000)
+    }
 }
 
 /// Slices of hits on a material, of which each number is at its place.
@@ -95,6 +114,13 @@ impl<G: Rows<N, R>, const N: usize, const R: usize> Kernel for Hits<'_, '_, '_, 
 pub trait Differentiable: Registered + sealed::Sealed {
     /// Names of the numbers of a material, as fields of [`Model::Material`]: `beta[1]`.
     const MATERIAL: &'static [&'static str];
+
+    /// Derivatives by the numbers of the parameters, in the order of their fields, of the weighted sum of a material's numbers.
+    #[doc(hidden)]
+    fn by_parameters(
+        params: impl IntoIterator<Item = f32>,
+        weights: impl IntoIterator<Item = f32>,
+    ) -> impl Iterator<Item = f32>;
 
     /// Computes the derivatives of a call, of value and density if `HAS_PDF`.
     #[doc(hidden)]
@@ -161,6 +187,17 @@ macro_rules! differentiable {
 
         impl Differentiable for $model {
             const MATERIAL: &'static [&'static str] = models::$variant::MATERIAL;
+
+            #[inline]
+            fn by_parameters(
+                params: impl IntoIterator<Item = f32>,
+                weights: impl IntoIterator<Item = f32>,
+            ) -> impl Iterator<Item = f32> {
+                let (mut m, mut v) = ([0.0; models::$variant::PARAMETERS], [0.0; Self::MATERIAL.len()]);
+                m.iter_mut().zip(params).for_each(|(to, x)| *to = x);
+                v.iter_mut().zip(weights).for_each(|(to, x)| *to = x);
+                models::$variant::by_parameters(&m, &v).into_iter()
+            }
 
             #[inline]
             fn run<const HAS_PDF: bool>(
