@@ -16,6 +16,8 @@ use std::path::Path;
 const RESULTS: usize = 4;
 /// Numbers of a hit and a direction: `wo`, `h`, `wi`.
 const ARGUMENTS: usize = 7;
+/// Lints take minutes for a hundred thousand generated lines, and find nothing that somebody could mend.
+const LINTED: &str = "#[cfg(not(clippy))]";
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
@@ -71,7 +73,7 @@ impl Visitor for Print<'_> {
                      pub(crate) const N: usize = {n};\npub(crate) const R: usize = {r};\n}}\n\
                      impl Rows<{n}, {r}> for Body{place} {{\nconst HAS_PDF: bool = {has_pdf};\n#[inline(always)]\n\
                      fn rows<L: Lanes<Stored = f32x8>>(m: &[f32; {n}], v: &[f32x8; INPUTS], out: &mut [f32x8; {r}]) \
-                     {{\n{body}\n}}\n}}"
+                     {{\n{LINTED}\n{{\n{body}\n}}\n}}\n}}"
                 );
                 source.bodies.push(body);
                 place
@@ -106,7 +108,7 @@ fn parameters(program: &Program) -> String {
     };
     let mut out = format!(
         "pub(crate) const PARAMETERS: usize = {count};\npub(crate) fn by_parameters(m: &[f32; {count}], v: &[f32; {numbers}]) \
-         -> [f32; {count}] {{\ntype L = f32;\n"
+         -> [f32; {count}] {{\n#[cfg(clippy)]\nreturn [0.0; {count}];\n{LINTED}\n{{\ntype L = f32;\n"
     );
     for place in gradient.schedule() {
         let operation = operation(&gradient, place, &inputs);
@@ -114,7 +116,7 @@ fn parameters(program: &Program) -> String {
     }
     let rows = gradient.results().iter();
     let rows: Vec<_> = rows.map(|row| operand(&gradient, *row, &inputs)).collect();
-    let _ = writeln!(out, "[{}]\n}}", rows.join(", "));
+    let _ = writeln!(out, "return [{}];\n}};\n}}", rows.join(", "));
     out
 }
 

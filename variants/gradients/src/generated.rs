@@ -30,6 +30,7 @@ mod models {
         clippy::all,
         clippy::pedantic,
         non_snake_case,
+        unused,
         reason = "generated: one line per operation"
     )]
     use super::{INPUTS, Rows, upper};
