@@ -113,7 +113,7 @@ impl<G: Rows<N, R>, const N: usize, const R: usize> Kernel for Hits<'_, '_, '_, 
 
 /// A model of the list, with its derivatives. Sealed.
 pub trait Differentiable: Registered + sealed::Sealed {
-    /// Names of the numbers of a material, as fields of [`Model::Material`]: `beta[1]`.
+    /// Names of the numbers of a material, as fields of [`Model::Material`](hairis::model::Model::Material): `beta[1]`.
     const MATERIAL: &'static [&'static str];
 
     /// Derivatives by the numbers of the parameters, in the order of their fields, of the weighted sum of a material's numbers.
