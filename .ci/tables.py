@@ -91,6 +91,40 @@ def hits():
     return record, ["", "goal, AVX2", *header[2:]], body
 
 
+def in_runs(record):
+    """Median over the runs of time and ratio, by model, call and level."""
+    cells = {}
+    for row in record.rows:
+        cells.setdefault((row["model"], row["call"], LEVELS.get(row["level"], row["level"])), []).append(row)
+    median = lambda rows, column: statistics.median(float(row[column]) for row in rows)
+    return {key: f"{three(median(rows, 'ns'))}, **{median(rows, 'ratio'):.2f}**" for key, rows in cells.items()}
+
+
+def conserving():
+    """What energy conservation and several materials cost over hits: ns per hit, and the ratio."""
+    record = Record("hits.csv")
+    cells = in_runs(record)
+    calls = ["eval_hits: Conserving over raw", "sample_hits: Conserving over raw", "prepare8 of one material: Conserving over raw",
+             "prepare8 of eight materials: Conserving over raw", "eval_hits of six materials: Conserving over raw",
+             "eval_sample_hits over both calls", "eval_hits of six materials over one", "eval_hits by references over a table"]
+    models = {"gaussian": "published", "gaussian-matched": "matched"}
+    levels = ["SSE2", "AVX2", "AVX-512"]
+    rows = [[f"{call}, {word}", *(cells[model, call, level] for level in levels)]
+            for call in calls for model, word in models.items()]
+    return record, ["Gaussian", *levels], rows
+
+
+def gradients():
+    """Derivatives of slices of hits over their values: ns per hit, and the ratio."""
+    record = Record("gradients.csv")
+    cells = in_runs(record)
+    models = {"Gaussian": "Gaussian", "GaussianMatched": "Gaussian, matched", "Cauchy": "Cauchy", "KajiyaKay": "Kajiya-Kay", "Chiang": "Chiang"}
+    levels = ["SSE2", "AVX2", "AVX-512"]
+    rows = [[f"{word}: {call}", *(cells[model, call, level] for level in levels)]
+            for model, word in models.items() for call in ("value", "value and density")]
+    return record, ["", *levels], rows
+
+
 def speed():
     """Times of a direction, and how many times as fast as the formulas."""
     record = Record("amd-epyc-family-25-model-1-stepping-1/2026-11-22.csv")
@@ -117,7 +151,7 @@ def speed():
     return record, header, rows
 
 
-TABLES = {"hand": hand, "hits": hits, "speed": speed}
+TABLES = {"conserving": conserving, "gradients": gradients, "hand": hand, "hits": hits, "speed": speed}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 
