@@ -14,30 +14,34 @@ use hairis::model::{GRAZING, LobeEval, Model, SampleLanes};
 use hairis::simd::{Broadcast, LaneStruct, Lanes, Path, Scalar, Vec3x, lanes3, store3};
 use hairis::{Eval, Hit, Lobe, LobeMask, PerLobe};
 
+/// Bits of the number 1. Compilers load constants in vectors, and compute with a fault beside them: other bits, or padding, would be a
+/// number that overflows now and then.
+const ONE: u32 = 1.0_f32.to_bits();
+
 /// Faults of a model, by number. They are constants of a material: a type per fault would be compiled for each.
-pub(crate) const SOUND: u8 = 0;
-pub(crate) const DENSITY_TOO_HIGH: u8 = 1;
-pub(crate) const WRONG_LANE: u8 = 2;
-pub(crate) const WRONG_PROBABILITY: u8 = 3;
-pub(crate) const NAN_AT_THE_POLE: u8 = 4;
-pub(crate) const NOT_RECIPROCAL: u8 = 5;
-pub(crate) const WIDE_SLICES_DIFFER: u8 = 6;
-pub(crate) const MASK_LEAKS: u8 = 7;
-pub(crate) const HEAVY_WEIGHT: u8 = 8;
-pub(crate) const SKEWED_LOBE: u8 = 9;
-pub(crate) const LOBE_MISSING: u8 = 10;
-pub(crate) const ALBEDO_TOO_LOW: u8 = 11;
-pub(crate) const DISCARDS: u8 = 12;
-pub(crate) const WEIGHT_WITHOUT_COSINE: u8 = 13;
-pub(crate) const LONG_DIRECTION: u8 = 14;
-pub(crate) const READS_H: u8 = 15;
-pub(crate) const PACKET_DIFFERS: u8 = 16;
-pub(crate) const WRONG_PACK: u8 = 17;
-pub(crate) const NEGATIVE: u8 = 18;
-pub(crate) const AZIMUTH_UNEVEN: u8 = 19;
-pub(crate) const NAN_IS_A_NUMBER: u8 = 20;
-pub(crate) const DIVIDES_BY_ZERO: u8 = 21;
-pub(crate) const NEGATIVE_ROUNDED_DOWN: u8 = 22;
+pub(crate) const SOUND: u32 = ONE;
+pub(crate) const DENSITY_TOO_HIGH: u32 = ONE + 1;
+pub(crate) const WRONG_LANE: u32 = ONE + 2;
+pub(crate) const WRONG_PROBABILITY: u32 = ONE + 3;
+pub(crate) const NAN_AT_THE_POLE: u32 = ONE + 4;
+pub(crate) const NOT_RECIPROCAL: u32 = ONE + 5;
+pub(crate) const WIDE_SLICES_DIFFER: u32 = ONE + 6;
+pub(crate) const MASK_LEAKS: u32 = ONE + 7;
+pub(crate) const HEAVY_WEIGHT: u32 = ONE + 8;
+pub(crate) const SKEWED_LOBE: u32 = ONE + 9;
+pub(crate) const LOBE_MISSING: u32 = ONE + 10;
+pub(crate) const ALBEDO_TOO_LOW: u32 = ONE + 11;
+pub(crate) const DISCARDS: u32 = ONE + 12;
+pub(crate) const WEIGHT_WITHOUT_COSINE: u32 = ONE + 13;
+pub(crate) const LONG_DIRECTION: u32 = ONE + 14;
+pub(crate) const READS_H: u32 = ONE + 15;
+pub(crate) const PACKET_DIFFERS: u32 = ONE + 16;
+pub(crate) const WRONG_PACK: u32 = ONE + 17;
+pub(crate) const NEGATIVE: u32 = ONE + 18;
+pub(crate) const AZIMUTH_UNEVEN: u32 = ONE + 19;
+pub(crate) const NAN_IS_A_NUMBER: u32 = ONE + 20;
+pub(crate) const DIVIDES_BY_ZERO: u32 = ONE + 21;
+pub(crate) const NEGATIVE_ROUNDED_DOWN: u32 = ONE + 22;
 
 /// A fibre with a diffuse lobe, uniform on the sphere, and a cone of mirror directions.
 ///
@@ -50,7 +54,7 @@ const CONE: Lobe = Lobe::slot(1);
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Params {
-    pub(crate) fault: u8,
+    pub(crate) fault: u32,
     pub(crate) kd: [f32; 3],
     pub(crate) ks: [f32; 3],
     /// Width of the cone in `sin theta`.
@@ -92,7 +96,7 @@ hairis::simd::lane_struct! {
 /// Constants, and the fault with which they are packed, taken out of lanes and read. All lanes have the same.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Faulty<T> {
-    fault: u8,
+    fault: u32,
     constants: T,
 }
 

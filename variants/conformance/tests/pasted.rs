@@ -15,7 +15,7 @@ use hairis_conformance::{
 #[track_caller]
 fn assert_fails_again(
     property: fn(&dyn ErasedSubject) -> Outcome,
-    fault: u8,
+    fault: u32,
     text: &str,
     pasted: fn(Broken) -> Outcome,
     why: &str,

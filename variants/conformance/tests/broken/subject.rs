@@ -7,7 +7,7 @@ use hairis_conformance::proptest::prelude::*;
 use hairis_conformance::{AnyMaterial, Claims, Materials, Subject, strategies};
 
 /// The fibre with this fault, as its author would test it.
-pub(crate) struct Broken(pub(crate) u8);
+pub(crate) struct Broken(pub(crate) u32);
 
 impl Subject for Broken {
     type Model = Fiber;
