@@ -31,6 +31,13 @@ pub fn in_groups<const I: usize, const N: usize>(
     mixed: usize,
     mut run: impl FnMut(&[u32], [&[f32]; I], [&mut [f32]; N]),
 ) {
+    if alike(index) == index.len() {
+        if !index.is_empty() {
+            run(index, inputs, outputs);
+        }
+        return;
+    }
+    // Not for calls on one material: to clear 28 kB takes as long as a hundred hits.
     let (mut from, mut to) = ([[0.0; ROWS]; I], [[0.0; ROWS]; N]);
     let mut at = 0;
     while let Some(rest) = index.get(at..).filter(|rest| !rest.is_empty()) {
