@@ -67,17 +67,31 @@ impl<M: Model> Material<Conserving<M>> {
         M::unfit::<f32, f32>(&self.constants.fit) > 0.0
     }
 
-    /// The material without energy conservation: the bits of [`Material<M>`] with the type of this one. For hosts that choose at run
-    /// time, as a second type would double their code; the constants that change nothing are read all the same.
+    /// The material without energy conservation, as [`from`](Self::from) makes it of a [`Material<M>`].
     #[inline]
     #[must_use]
     pub fn raw(&self) -> Self {
+        Self::from(Material::<M> {
+            constants: self.constants.inner,
+            level: self.level,
+        })
+    }
+}
+
+/// The bits of a raw material with the type of one that conserves energy: for hosts that choose at run time, as a second type would
+/// double their code. Constants that change nothing are read all the same.
+impl<M: Model> From<Material<M>> for Material<Conserving<M>> {
+    #[inline]
+    fn from(raw: Material<M>) -> Self {
         let constants = ConservingMaterial {
-            inner: self.constants.inner,
+            inner: raw.constants,
             // An albedo of 0 everywhere.
             fit: LaneStruct::make(&Path::Root, &mut |_| 0.0),
         };
-        Self { constants, ..*self }
+        Self {
+            constants,
+            level: raw.level,
+        }
     }
 }
 

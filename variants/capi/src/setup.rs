@@ -358,14 +358,14 @@ fn build<M: Registered>(
     energy: u32,
 ) -> Result<Material<Conserving<M>>, ParamError> {
     let params: M::Params = Parameters::from_values(values)?;
-    let material = |params| Material::new(&Conserving(M::MODEL), params);
+    let raw = |params| Material::<Conserving<M>>::from(Material::new(&M::MODEL, params));
     match energy {
-        ENERGY_CONSERVING => Ok(material(&params)),
+        ENERGY_CONSERVING => Ok(Material::new(&Conserving(M::MODEL), &params)),
         ENERGY_SCALED => {
-            let scale = material(&params).raw().conserving_scale();
-            Ok(material(&params.scaled(scale)?).raw())
+            let scale = raw(&params).conserving_scale();
+            Ok(raw(&params.scaled(scale)?))
         }
-        _ => Ok(material(&params).raw()),
+        _ => Ok(raw(&params)),
     }
 }
 
