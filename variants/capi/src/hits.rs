@@ -65,15 +65,6 @@ unsafe fn optional<'a>(to: *mut f32, n: usize) -> Option<&'a mut [f32]> {
     (!to.is_null()).then(|| unsafe { output(to, n) })
 }
 
-/// `n` numbers; none if the host leaves them out.
-unsafe fn optional_input<'a>(from: *const f32, n: usize) -> &'a [f32] {
-    if from.is_null() {
-        return &[];
-    }
-    // SAFETY: the caller's promise.
-    unsafe { input(from, n) }
-}
-
 /// Three columns to write; `None` if the host leaves them out.
 unsafe fn optional3<'a>(to: [*mut f32; 3], n: usize) -> Option<[&'a mut [f32]; 3]> {
     // SAFETY: the caller's promise.
@@ -118,62 +109,66 @@ fn are_whole(columns: [*mut f32; 3]) -> bool {
 
 /// Runs a call over hits: those of one material at a time.
 unsafe fn run_all(materials: *const RawMaterial, index: Option<&[u32]>, rows: &Rows, n: usize) {
-    // SAFETY: the caller's promise: indices are checked, and no material is empty.
+    // SAFETY: the caller's promise.
     unsafe {
-        let one = |index: u32, rows: &Rows, n: usize| {
-            let material = materials.add(index as usize);
-            if let Some(id) = model_of(material) {
-                run(id, material, rows, n);
+        match (index, rows.call) {
+            (None, _) => run_one(materials, 0, rows, n),
+            (Some(index), Call::Eval(columns)) => {
+                run_groups(materials, index, rows, columns, Call::Eval);
             }
-        };
-        let Some(index) = index else {
-            return one(0, rows, n);
-        };
-        let (from, to) = (
-            |column: *const f32| optional_input(column, n),
-            |column: *mut f32| optional(column, n).unwrap_or_default(),
-        );
-        let ([u, v, w], [x, y, z]) = (rows.wo, rows.query);
-        let inputs = [u, v, w, rows.h, x, y, z].map(from);
-        let rows_of = |inputs: [&[f32]; 7], call: Call| {
-            let [u, v, w, h, x, y, z] = inputs.map(|column| {
-                if column.is_empty() {
-                    ptr::null()
-                } else {
-                    column.as_ptr()
-                }
-            });
-            Rows {
-                wo: [u, v, w],
-                h,
-                query: [x, y, z],
-                call,
-            }
-        };
-        match rows.call {
-            Call::Eval(columns) => {
-                in_groups(index, inputs, columns.map(to), 1, |index, inputs, out| {
-                    let rows = rows_of(inputs, Call::Eval(out.map(address)));
-                    one(index[0], &rows, index.len());
-                });
-            }
-            Call::Sample(columns) => {
-                in_groups(index, inputs, columns.map(to), 1, |index, inputs, out| {
-                    let rows = rows_of(inputs, Call::Sample(out.map(address)));
-                    one(index[0], &rows, index.len());
-                });
+            (Some(index), Call::Sample(columns)) => {
+                run_groups(materials, index, rows, columns, Call::Sample);
             }
         }
     }
 }
 
-/// Address of a column to write; null for one that the host leaves out.
-fn address(column: &mut [f32]) -> *mut f32 {
-    if column.is_empty() {
-        ptr::null_mut()
-    } else {
-        column.as_mut_ptr()
+/// Runs a call over hits on the material of an index, which is not empty.
+unsafe fn run_one(materials: *const RawMaterial, index: u32, rows: &Rows, n: usize) {
+    // SAFETY: the caller's promise: indices are checked.
+    unsafe {
+        let material = materials.add(index as usize);
+        if let Some(id) = model_of(material) {
+            run(id, material, rows, n);
+        }
     }
+}
+
+/// Runs a call over hits on several materials, whose columns of results `call` names.
+unsafe fn run_groups<const N: usize>(
+    materials: *const RawMaterial,
+    index: &[u32],
+    rows: &Rows,
+    columns: [*mut f32; N],
+    call: fn([*mut f32; N]) -> Call,
+) {
+    let n = index.len();
+    let ([u, v, w], [x, y, z]) = (rows.wo, rows.query);
+    // SAFETY: the caller's promise.
+    let inputs = [u, v, w, rows.h, x, y, z].map(|column| {
+        let column = (!column.is_null()).then(|| unsafe { input(column, n) });
+        column.unwrap_or_default()
+    });
+    // SAFETY: the caller's promise.
+    let outputs = columns.map(|column| unsafe { optional(column, n) }.unwrap_or_default());
+    in_groups(index, inputs, outputs, 1, |index, inputs, outputs| {
+        // Null for columns that the host leaves out.
+        let [u, v, w, h, x, y, z] = inputs.map(|column| match column {
+            [] => ptr::null(),
+            column => column.as_ptr(),
+        });
+        let rows = Rows {
+            wo: [u, v, w],
+            h,
+            query: [x, y, z],
+            call: call(outputs.map(|column| match column {
+                [] => ptr::null_mut(),
+                column => column.as_mut_ptr(),
+            })),
+        };
+        // SAFETY: the caller's promise.
+        unsafe { run_one(materials, index[0], &rows, index.len()) };
+    });
 }
 
 /// Checks a call, and runs it.
