@@ -235,6 +235,21 @@ impl ModelId {
         matches!(Self::find(self.name(), None), Some(first) if first as usize == self as usize)
     }
 
+    /// Whether programs that must be small keep the entry: all but bands of another number than the default, and Chiang's choice by
+    /// channel.
+    #[inline]
+    #[must_use]
+    pub const fn is_essential(self) -> bool {
+        !matches!(
+            self,
+            Self::GaussianMatched5
+                | Self::GaussianMatched25
+                | Self::CauchyMatched5
+                | Self::CauchyMatched25
+                | Self::ChiangByChannel
+        )
+    }
+
     /// The entry of this name, with this word of its [`choice`](Self::choice); without a word, the first of the name. `ou` is
     /// accepted for `published`.
     ///

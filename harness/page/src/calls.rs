@@ -25,7 +25,7 @@ impl Calls {
         impl Visitor for All {
             type Output = Calls;
             fn visit<M: Registered>(self) -> Calls {
-                if const { !has(ModelId::of::<M>()) } {
+                if const { !ModelId::of::<M>().is_essential() } {
                     return Self.visit::<Matched<Gaussian>>();
                 }
                 Calls {
@@ -39,18 +39,6 @@ impl Calls {
         }
         id.visit(All)
     }
-}
-
-/// Whether the module has the model: bands of another number than the default would add a third to it.
-pub(crate) const fn has(id: ModelId) -> bool {
-    !matches!(
-        id,
-        ModelId::GaussianMatched5
-            | ModelId::GaussianMatched25
-            | ModelId::CauchyMatched5
-            | ModelId::CauchyMatched25
-            | ModelId::ChiangByChannel
-    )
 }
 
 /// The model of an index; of one that there is not, the first.

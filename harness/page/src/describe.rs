@@ -1,7 +1,6 @@
 //! The list of models as JSON.
 
 use crate::artist::CONTROLS;
-use crate::calls::has;
 use crate::memory::{COLUMN, Text};
 use core::fmt::{self, Display};
 use hairis::HairParams;
@@ -138,7 +137,7 @@ pub(crate) fn write(text: &mut Text) {
         );
         let mut mark = "";
         for (index, id) in ModelId::ALL.iter().enumerate() {
-            if id.name() == name && has(*id) {
+            if id.name() == name && id.is_essential() {
                 let word = Quoted(id.choice().map_or("", |(_, word)| word));
                 say!(text, "{mark}{{\"model\":{index},\"word\":{word}}}");
                 mark = ",";

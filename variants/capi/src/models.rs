@@ -4,15 +4,7 @@ use hairis_variants::{ModelId, Registered, Visitor};
 
 /// Whether the library has the model.
 const fn has(id: ModelId) -> bool {
-    !cfg!(feature = "few")
-        || !matches!(
-            id,
-            ModelId::GaussianMatched5
-                | ModelId::GaussianMatched25
-                | ModelId::CauchyMatched5
-                | ModelId::CauchyMatched25
-                | ModelId::ChiangByChannel
-        )
+    !cfg!(feature = "few") || id.is_essential()
 }
 
 /// Models of the library, in the order of their indices.
