@@ -1,7 +1,7 @@
 //! Energy conservation of the published model: each channel divided by its albedo where that is above 1.
 //!
-//! The albedo of a material depends on the inclination of `wo` alone. [`AlbedoFit`] holds it as polynomials; where they are not
-//! accurate enough, every shading point integrates the lobes.
+//! The albedo of a material depends on the inclination of `wo` alone. [`AlbedoFit`] holds what it costs the colours as polynomials;
+//! where they are not accurate enough, every shading point integrates the lobes.
 
 mod fit;
 
@@ -16,8 +16,8 @@ const PIECES: usize = 4;
 const POWERS: usize = 5;
 
 crate::simd::lane_struct! {
-    /// Albedo of each channel as a function of the inclination of `wo`: on each side of the normal plane, the lower one first,
-    /// four polynomials of degree 4 in a warped inclination.
+    /// `1 / albedo - 1` of each channel as a function of the inclination of `wo`: on each side of the normal plane, the lower one
+    /// first, four polynomials of degree 4 in a warped inclination. Where the albedo is below 1 they go on smoothly above 0.
     ///
     /// With `x = sqrt(cos / (1 + |sin|))` of the inclination the pieces have equal lengths in `v = (1 + near) x / (x + near)`.
     /// Next to a pole the albedo is `A + B log x` of smooth `A` and `B`, the latter of order `x^2`: the root makes the logarithm
@@ -27,7 +27,7 @@ crate::simd::lane_struct! {
         pub(in crate::hair) near: [C; 2],
         /// Coefficients, from the constant up, of each channel in each piece.
         pub(in crate::hair) coefficients: [[[C; 2 * PIECES]; 3]; POWERS],
-        /// 1 where the polynomials are not accurate enough and all 0, else 0.
+        /// 1 where the polynomials are not accurate enough and all 0, which changes nothing, else 0.
         pub(in crate::hair) refused: C,
     }
 }
@@ -49,7 +49,7 @@ pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
     let v = L::quotient(root * (near + 1.0), near.mul_add(below, root)).min(one);
     let piece = L::Index::search(v, [c(0.25), c(0.5), c(0.75)], PIECES - 1);
     let t = v.mul_add(c(8.0), piece.to_number().mul_add(c(-2.0), c(-1.0)));
-    let mut albedo = [one; 3];
+    let mut by = [one; 3];
     let mut channel = 0;
     while channel < 3 {
         let mut power = POWERS - 1;
@@ -59,15 +59,11 @@ pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
             let next = C::look_up_eight(&fit.coefficients[power][channel], piece, upper);
             sum = sum.mul_add(t, next);
         }
-        albedo[channel] = sum.max(one);
+        by[channel] = sum.min(c(0.0));
         channel += 1;
     }
-    // One division for the three. Fits are of albedos below `LARGEST`, whose cube is a float.
-    let [r, g, b] = albedo;
-    let rg = r * g;
-    let reciprocal = L::quotient(one, rg * b);
-    let of_b = reciprocal * b;
-    scaled::<L>(view, [of_b * g, of_b * r, reciprocal * rg])
+    // A sum loses digits next to -1, where no fit is: see `LEAST`.
+    scaled::<L>(view, by, |color, by| color.mul_add(by, color))
 }
 
 /// The view terms with each channel of the lobes divided by its albedo where that is above 1, to within 2e-4; in the lanes of
@@ -86,12 +82,16 @@ pub(super) fn integrated<B: Bell, L: Lanes>(
         by[channel] = L::quotient(one, albedo);
         channel += 1;
     }
-    scaled::<L>(view, by)
+    scaled::<L>(view, by, |color, by| color * by)
 }
 
-/// The view terms with a factor on each channel.
+/// The view terms with colours that a function makes of each colour and the number of its channel.
 #[inline(always)]
-fn scaled<L: Lanes>(view: &HairView<L::Stored>, by: [L; 3]) -> HairView<L::Stored> {
+fn scaled<L: Lanes>(
+    view: &HairView<L::Stored>,
+    by: [L; 3],
+    color: impl Fn(L, L) -> L,
+) -> HairView<L::Stored> {
     let hair = &view.lobes;
     let mut colors = [
         lanes3(&hair.color_r),
@@ -100,9 +100,9 @@ fn scaled<L: Lanes>(view: &HairView<L::Stored>, by: [L; 3]) -> HairView<L::Store
     ];
     let mut channel = 0;
     while channel < 3 {
-        colors[0][channel] = colors[0][channel] * by[channel];
-        colors[1][channel] = colors[1][channel] * by[channel];
-        colors[2][channel] = colors[2][channel] * by[channel];
+        colors[0][channel] = color(colors[0][channel], by[channel]);
+        colors[1][channel] = color(colors[1][channel], by[channel]);
+        colors[2][channel] = color(colors[2][channel], by[channel]);
         channel += 1;
     }
     let [r, tt, trt] = colors;

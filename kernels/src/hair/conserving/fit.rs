@@ -15,15 +15,15 @@ const NODES: usize = 8;
 /// Warps to try, by `near`: the first is that of everyday hair.
 const NEAR: [f32; 6] = [0.5, 0.38, 0.8, 0.25, 1.5, 100.0];
 
-/// Largest error of a fit in use, relative to the albedo where that is above 1.
+/// Largest error of a fit in use, relative to the albedo that it leaves.
 const ACCEPTED: f32 = 7e-4;
 
 /// Width of a lobe, rad, below which it is looked at for itself, and where: in widths from its end.
 const NARROW: f32 = 0.05;
 const WIDTHS: [f32; 8] = [-16.0, -4.0, -1.6, -0.5, 0.5, 1.6, 4.0, 16.0];
 
-/// Albedos above it are not fitted.
-const LARGEST: f32 = 1e9;
+/// Factors on colours below it are not fitted, which are those of albedos above 1,000: the fit is of their distance from 1.
+const LEAST: f32 = 1e-3;
 
 /// `cos(k pi / 16)`.
 const COS: [f32; 9] = [
@@ -56,6 +56,16 @@ const ROOTS: [f32; NODES] = {
     roots
 };
 
+/// `1 / albedo - 1`; for albedos below 1 its series about 1, which has no pole.
+fn excess(albedo: f32) -> f32 {
+    let e = albedo - 1.0;
+    if e > 0.0 {
+        f32::quotient(-e, albedo)
+    } else {
+        e * (e * (e * (e - 1.0) + 1.0) - 1.0)
+    }
+}
+
 /// Chebyshev coefficients of the polynomial through the values at the roots.
 fn chebyshev(values: &[f32; NODES]) -> [f32; NODES] {
     let mut coefficients = [0.0; NODES];
@@ -69,17 +79,15 @@ fn chebyshev(values: &[f32; NODES]) -> [f32; NODES] {
     coefficients
 }
 
-/// Least and largest value of a polynomial on `[-1, 1]`, at 17 points.
-fn range(coefficients: &[f32; POWERS]) -> [f32; 2] {
-    let [mut least, mut most] = [f32::MAX, 0.0];
+/// Least value of a polynomial on `[-1, 1]`, at 17 points; NaN if one is.
+fn least(coefficients: &[f32; POWERS]) -> f32 {
+    let mut least = f32::MAX;
     for k in 0..=16 {
         let t = cosine(k);
         let value = coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c);
-        least = value.min(least);
-        // NaN stays.
-        most = if value < most { most } else { value };
+        least = if value > least { least } else { value };
     }
-    [least, most]
+    least
 }
 
 /// The polynomials of one side of the normal plane, in one warp.
@@ -116,7 +124,7 @@ impl Side {
             let v = (f32x8::new(ROOTS) + middle) * 0.125;
             let albedo = albedos::<B>(lobes, sign, v * near / (1.0 + near - v));
             for (channel, albedo) in albedo.iter().enumerate() {
-                let c = chebyshev(albedo.as_array());
+                let c = chebyshev(&albedo.as_array().map(excess));
                 let monomials = [
                     c[0] - c[2] + c[4],
                     c[1] - 3.0 * c[3],
@@ -127,7 +135,7 @@ impl Side {
                 for (table, coefficient) in side.coefficients.iter_mut().zip(monomials) {
                     table[channel][piece] = coefficient;
                 }
-                if relative_error(&c, range(&monomials)) > ACCEPTED {
+                if relative_error(&c, least(&monomials)) > ACCEPTED {
                     return None;
                 }
             }
@@ -167,14 +175,14 @@ impl Side {
         let mut largest = 0.0_f32;
         for (channel, albedo) in albedo.iter().enumerate() {
             for (x, albedo) in x.into_iter().zip(albedo.as_array()) {
-                let fit = self.at(channel, x).max(1.0);
-                largest = largest.max((f32::quotient(fit, albedo.max(1.0)) - 1.0).abs());
+                let factor = 1.0 + self.at(channel, x).min(0.0);
+                largest = largest.max((factor * albedo.max(1.0) - 1.0).abs());
             }
         }
         largest
     }
 
-    /// The albedo of a channel by the fit.
+    /// `1 / albedo - 1` of a channel by the fit.
     fn at(&self, channel: usize, x: f32) -> f32 {
         let v = f32::quotient((1.0 + self.near) * x, x + self.near);
         let (mut piece, mut t) = (0, 8.0 * v - 1.0);
@@ -194,16 +202,18 @@ impl Side {
     }
 }
 
-/// Bound on the error of a piece, relative to the albedo where that is above 1; infinite for albedos that are not fitted.
+/// Bound on the error of a piece whose least value is known, relative to the factor on colours where that is below 1; infinite for
+/// factors that are not fitted.
 ///
 /// Coefficients that are left out bound the error of the polynomial through the nodes; half of the last two once more stands
 /// for those beyond.
-fn relative_error(c: &[f32; NODES], [least, most]: [f32; 2]) -> f32 {
+fn relative_error(c: &[f32; NODES], least: f32) -> f32 {
     let error = c[5].abs() + 1.5 * (c[6].abs() + c[7].abs());
-    if most + error < 1.0 {
+    let factor = 1.0 + least - error;
+    if factor > 1.0 {
         0.0
-    } else if most < LARGEST {
-        f32::quotient(error, (least - error).max(1.0))
+    } else if factor > LEAST {
+        f32::quotient(error, factor)
     } else {
         f32::INFINITY
     }
