@@ -89,6 +89,23 @@ impl Columns {
     }
 }
 
+/// Evaluates and samples each hit in one call.
+fn both_at_once<M: Model>(material: &Material<M>, columns: &mut Columns) {
+    let (hits, wi, xi, evals, samples) = columns.parts();
+    black_box(
+        material
+            .eval_sample_hits(hits, wi, evals, xi, samples)
+            .is_ok(),
+    );
+}
+
+/// Evaluates and samples each hit in a call each.
+fn both_calls<M: Model>(material: &Material<M>, columns: &mut Columns) {
+    let (hits, wi, xi, evals, samples) = columns.parts();
+    black_box(material.eval_hits(hits, wi, evals).is_ok());
+    black_box(material.sample_hits(hits, xi, samples).is_ok());
+}
+
 /// The pairs of one model.
 #[derive(Clone, Copy)]
 struct Run<'a> {
@@ -201,25 +218,34 @@ impl Run<'_> {
         );
         row(
             "eval_sample_hits over both calls",
-            &mut || {
-                let (hits, wi, xi, evals, samples) = ours.parts();
-                black_box(raw.eval_sample_hits(hits, wi, evals, xi, samples).is_ok());
-            },
-            &mut || {
-                let (hits, wi, xi, evals, samples) = base.parts();
-                black_box(raw.eval_hits(hits, wi, evals).is_ok());
-                black_box(raw.sample_hits(hits, xi, samples).is_ok());
-            },
+            &mut || both_at_once(raw, &mut ours),
+            &mut || both_calls(raw, &mut base),
+        );
+        row(
+            "eval_sample_hits over both calls: Conserving",
+            &mut || both_at_once(fit, &mut ours),
+            &mut || both_calls(fit, &mut base),
         );
     }
 
     /// Packets of hits on one material and on eight.
     fn packets<M: Model>(self, level: Level, raw: &Material<M>, fit: &Material<Conserving<M>>) {
-        let wo = packets(&self.inputs.wo);
+        let [wo, wi] = [&self.inputs.wo, &self.inputs.wi].map(|rows| packets(rows));
+        let hits = || wo.iter().zip(&wi);
         let (raw8, fit8) = (Material8::pack([raw; 8]), Material8::pack([fit; 8]));
         let row = |call, ours: &mut dyn FnMut(), base: &mut dyn FnMut()| {
             self.pair(call, level.name(), DIRECTIONS, ours, base);
         };
+        row(
+            "packets of one material: Conserving over raw",
+            &mut || hits().for_each(|(wo, wi)| keep(fit.prepare8(wo).eval_pdf8(wi))),
+            &mut || hits().for_each(|(wo, wi)| keep(raw.prepare8(wo).eval_pdf8(wi))),
+        );
+        row(
+            "packets of eight materials: Conserving over raw",
+            &mut || hits().for_each(|(wo, wi)| keep(fit8.prepare8(wo).eval_pdf8(wi))),
+            &mut || hits().for_each(|(wo, wi)| keep(raw8.prepare8(wo).eval_pdf8(wi))),
+        );
         row(
             "prepare8 of one material: Conserving over raw",
             &mut || wo.iter().for_each(|wo| keep(fit.prepare8(wo))),
