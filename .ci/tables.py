@@ -104,9 +104,11 @@ def conserving():
     """What energy conservation and several materials cost over hits: ns per hit, and the ratio."""
     record = Record("hits.csv")
     cells = in_runs(record)
-    calls = ["eval_hits: Conserving over raw", "sample_hits: Conserving over raw", "prepare8 of one material: Conserving over raw",
+    calls = ["eval_hits: Conserving over raw", "sample_hits: Conserving over raw", "packets of one material: Conserving over raw",
+             "packets of eight materials: Conserving over raw", "prepare8 of one material: Conserving over raw",
              "prepare8 of eight materials: Conserving over raw", "eval_hits of six materials: Conserving over raw",
-             "eval_sample_hits over both calls", "eval_hits of six materials over one", "eval_hits by references over a table"]
+             "eval_sample_hits over both calls", "eval_sample_hits over both calls: Conserving",
+             "eval_hits of six materials over one", "eval_hits by references over a table"]
     models = {"gaussian": "published", "gaussian-matched": "matched"}
     levels = ["SSE2", "AVX2", "AVX-512"]
     rows = [[f"{call}, {word}", *(cells[model, call, level] for level in levels)]
