@@ -77,7 +77,7 @@ fn right(asked: &Asked, model: ModelId, answer: &Answer) -> bool {
         Given::Kept => answer.wi.map(to_f64),
     };
     match asked.given {
-        Given::Wi(_) | Given::Xi(_) => is_right(&*point, truth, answer),
+        Given::Wi(_) | Given::Xi(_) => is_right(&*point, [1.0; 3], truth, answer),
         Given::Candidate(_) | Given::Proposal(_) | Given::Kept => {
             agrees(truth, answer, |wi| weighed(&*point, wi))
         }
@@ -103,10 +103,21 @@ pub fn drawn(point: &dyn Reference<f64>, xi: [f32; 3]) -> Option<[f64; 3]> {
 }
 
 /// Whether an answer is correct for the direction that was given, or that a sample must come to; `None` if the sample must be
-/// discarded.
+/// discarded. The value has a factor on each channel.
 #[must_use]
-pub fn is_right(point: &dyn Reference<f64>, truth: Option<[f64; 3]>, answer: &Answer) -> bool {
-    agrees(truth, answer, |wi| (point.eval(wi), point.pdf(wi)))
+pub fn is_right(
+    point: &dyn Reference<f64>,
+    factors: [f64; 3],
+    truth: Option<[f64; 3]>,
+    answer: &Answer,
+) -> bool {
+    agrees(truth, answer, |wi| {
+        let value = point.eval(wi);
+        (
+            [0, 1, 2].map(|c: usize| factors[c] * value[c]),
+            point.pdf(wi),
+        )
+    })
 }
 
 /// Whether an answer has the right direction, and what `expected` gives there.

@@ -100,6 +100,8 @@ const SLICES: &str = "slices";
 const SHORT: &str = "slices of 8";
 /// The kernel, all directions in one call, each at a shading point of its own.
 const HITS: &str = "slices of hits";
+/// [`HITS`] with [`Conserving`](hairis::Conserving), as hosts are told to make their materials.
+const CONSERVING_HITS: &str = "slices of hits, Conserving";
 /// Directions of [`SHORT`].
 const FEW: usize = 8;
 
@@ -110,6 +112,8 @@ pub struct Contender {
     pub name: &'static str,
     /// Instruction set of its lanes.
     pub level: &'static str,
+    /// Whether its answers have each channel divided by its albedo where that is above 1.
+    pub conserves: bool,
     /// Pass over all inputs.
     pub task: Box<dyn Pass>,
 }
@@ -200,6 +204,7 @@ impl Contenders {
             [("scalar, libm crate", libm), ("scalar, std", std)].map(|(level, task)| Contender {
                 name: REFERENCE,
                 level,
+                conserves: false,
                 task,
             });
         Self(vec![
@@ -208,6 +213,7 @@ impl Contenders {
             Contender {
                 name: ONE,
                 level: "scalar",
+                conserves: false,
                 task: one,
             },
         ])
@@ -218,6 +224,7 @@ impl Contenders {
         self.0.extend(Level::available().map(|level| Contender {
             name,
             level: level.name(),
+            conserves: name == CONSERVING_HITS,
             task: task(level),
         }));
         self

@@ -272,7 +272,7 @@ impl SpeedCell {
                 .collect();
             let ([ns_q1, ns, ns_q3], [ratio_q1, ratio, ratio_q3]) =
                 (quartiles(&ns), quartiles(&ratios));
-            let wrong_share = truth.wrong_share(&contender.task.answers());
+            let wrong_share = truth.wrong_share(&contender.task.answers(), contender.conserves);
             SpeedResult {
                 op,
                 model,
@@ -328,10 +328,12 @@ mod tests {
             contenders,
             truth,
             ..
-        } in kajiya_kay()
+        } in [ModelId::KajiyaKay, ModelId::Gaussian]
+            .iter()
+            .flat_map(|model| contests(*model, &draw(*model, 1)).expect("accepted"))
         {
             for mut contender in contenders {
-                let wrong = truth.wrong_share(&contender.task.answers());
+                let wrong = truth.wrong_share(&contender.task.answers(), contender.conserves);
                 assert!(
                     wrong <= MAX_WRONG,
                     "{} {} {}: {wrong}",
@@ -356,15 +358,22 @@ mod tests {
             .find(|contender| contender.name == "eight lanes")
             .expect("among all");
         let mut answers = eight.task.answers();
-        assert!(truth.wrong_share(&answers) <= MAX_WRONG, "right answers");
+        assert!(
+            truth.wrong_share(&answers, false) <= MAX_WRONG,
+            "right answers"
+        );
         for answer in answers.iter_mut().step_by(8) {
             answer.pdf = answer.pdf.map(|pdf| 1.01 * pdf);
         }
         assert!(
-            truth.wrong_share(&answers) >= 0.12,
+            truth.wrong_share(&answers, false) >= 0.12,
             "a wrong density passed"
         );
         answers.truncate(TIMED_DIRECTIONS - 1);
-        assert_eq!(truth.wrong_share(&answers), 1.0, "an answer is missing");
+        assert_eq!(
+            truth.wrong_share(&answers, false),
+            1.0,
+            "an answer is missing"
+        );
     }
 }

@@ -2,16 +2,19 @@
 
 use super::inputs::pairs;
 use super::{
-    Contenders, EIGHT, EIGHT_AT_ONE, Entrants, HITS, Implementations, TIMED_DIRECTIONS,
-    TimedInputs, Truth, truth,
+    CONSERVING_HITS, Contenders, EIGHT, EIGHT_AT_ONE, Entrants, HITS, Implementations,
+    TIMED_DIRECTIONS, TimedInputs, Truth, truth,
 };
 use crate::inputs::{arrays, packets, xi_packets};
 use crate::platform::{Platform, platform};
 use crate::task::{Answer, Output, Pass, Several, Slices, task};
 use glam::Vec3;
-use hairis::columns::{EvalColumns, HitColumns, SampleColumns};
+use hairis::columns::{
+    EvalColumns, HitColumns, HitsError, LengthError, MaterialTable, SampleColumns,
+};
+use hairis::model::Model;
 use hairis::simd::f32x8;
-use hairis::{Material8, Sample8};
+use hairis::{Conserving, Material, Material8, Sample8};
 use hairis_reference::{Formulas, Reference};
 
 /// The first `N` samples of a packet.
@@ -96,36 +99,81 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
             })
         });
     } else {
+        let rows = joined(&arrays(wo), &inputs.xi);
         contenders = contenders.levels(HITS, |level| {
             let material = material.with_level(level);
-            let call = move |[x, y, z, a, b, c]: [&[f32]; 6], out: [&mut [f32]; 11]| {
-                let [red, green, blue, pdf, u, v, w, wr, wg, wb, slot] = out;
-                let (value, weight) = (Some([red, green, blue]), Some([wr, wg, wb]));
-                let out = SampleColumns {
-                    wi: Some([u, v, w]),
-                    value,
-                    pdf: Some(pdf),
-                    weight,
-                    slot: Some(slot),
-                };
-                material.sample_hits(
-                    HitColumns {
-                        wo: [x, y, z],
-                        h: None,
-                    },
-                    [a, b, c],
-                    out,
-                )
-            };
-            Box::new(Slices::new(
-                TIMED_DIRECTIONS,
-                &joined(&arrays(wo), &inputs.xi),
-                call,
-            ))
+            samples(&rows, move |hits, xi, out| {
+                material.sample_hits(hits, xi, out)
+            })
         });
+        if const { !M::CONSERVES } {
+            let material = Material::new(&Conserving(M::MODEL), params);
+            contenders = contenders.levels(CONSERVING_HITS, |level| {
+                let material = material.with_level(level);
+                samples(&rows, move |hits, xi, out| {
+                    material.sample_hits(hits, xi, out)
+                })
+            });
+        }
     }
     let points = truth::<M>(params, wo)?;
     Ok((contenders, Truth::of_samples(points, &inputs.xi)))
+}
+
+/// A call that evaluates rows of hits and directions.
+fn evals(
+    rows: &[[f32; 6]],
+    call: impl Fn(HitColumns<'_>, [&[f32]; 3], EvalColumns<'_>) -> Result<(), LengthError> + 'static,
+) -> Box<dyn Pass> {
+    let call = move |[x, y, z, u, v, w]: [&[f32]; 6], [r, g, b, pdf]: [&mut [f32]; 4]| {
+        let (wo, out) = (
+            [x, y, z],
+            EvalColumns {
+                value: Some([r, g, b]),
+                pdf: Some(pdf),
+            },
+        );
+        call(HitColumns { wo, h: None }, [u, v, w], out)
+    };
+    Box::new(Slices::new(TIMED_DIRECTIONS, rows, call))
+}
+
+/// A call that samples rows of hits and uniform numbers.
+fn samples(
+    rows: &[[f32; 6]],
+    call: impl Fn(HitColumns<'_>, [&[f32]; 3], SampleColumns<'_>) -> Result<(), LengthError> + 'static,
+) -> Box<dyn Pass> {
+    let call = move |[x, y, z, a, b, c]: [&[f32]; 6], out: [&mut [f32]; 11]| {
+        let [red, green, blue, pdf, u, v, w, wr, wg, wb, slot] = out;
+        let (wo, out) = (
+            [x, y, z],
+            SampleColumns {
+                wi: Some([u, v, w]),
+                value: Some([red, green, blue]),
+                pdf: Some(pdf),
+                weight: Some([wr, wg, wb]),
+                slot: Some(slot),
+            },
+        );
+        call(HitColumns { wo, h: None }, [a, b, c], out)
+    };
+    Box::new(Slices::new(TIMED_DIRECTIONS, rows, call))
+}
+
+/// Samples of rows of hits on eight materials by turns.
+fn table<M: Model + 'static>(rows: &[[f32; 6]], materials: [Material<M>; 8]) -> Box<dyn Pass> {
+    let index: Vec<u32> = (0..8).cycle().take(rows.len()).collect();
+    samples(rows, move |hits, xi, out| {
+        let table = MaterialTable {
+            materials: &materials,
+            index: &index,
+        };
+        // No index is beyond the table; if one were, the answers would be found wrong.
+        match table.sample_hits(hits, xi, out) {
+            Err(HitsError::Length(error)) => Err(error),
+            _ => Ok(()),
+        }
+    })
 }
 
 /// Rows of both.
@@ -146,7 +194,8 @@ pub(super) fn eval<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
     } = Implementations::new(params);
     let both = pairs(&arrays(&inputs.wo), &arrays(&inputs.wi));
     let eights = pairs(&packets(&inputs.wo), &packets(&inputs.wi));
-    let contenders = Contenders::new(
+    let rows = joined(&arrays(&inputs.wo), &arrays(&inputs.wi));
+    let mut contenders = Contenders::new(
         task(&both, move |(wo, wi)| {
             M::point(&libm, *wo, 0.0).eval_pdf(*wi)
         }),
@@ -163,26 +212,19 @@ pub(super) fn eval<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
     })
     .levels(HITS, |level| {
         let material = material.with_level(level);
-        let call = move |[x, y, z, u, v, w]: [&[f32]; 6], [r, g, b, pdf]: [&mut [f32]; 4]| {
-            let out = EvalColumns {
-                value: Some([r, g, b]),
-                pdf: Some(pdf),
-            };
-            material.eval_hits(
-                HitColumns {
-                    wo: [x, y, z],
-                    h: None,
-                },
-                [u, v, w],
-                out,
-            )
-        };
-        Box::new(Slices::new(
-            TIMED_DIRECTIONS,
-            &joined(&arrays(&inputs.wo), &arrays(&inputs.wi)),
-            call,
-        ))
+        evals(&rows, move |hits, wi, out| {
+            material.eval_hits(hits, wi, out)
+        })
     });
+    if const { !M::CONSERVES } {
+        let material = Material::new(&Conserving(M::MODEL), params);
+        contenders = contenders.levels(CONSERVING_HITS, |level| {
+            let material = material.with_level(level);
+            evals(&rows, move |hits, wi, out| {
+                material.eval_hits(hits, wi, out)
+            })
+        });
+    }
     Ok((
         contenders,
         Truth::of_directions(truth::<M>(params, &inputs.wo)?, &inputs.wi),
@@ -203,17 +245,22 @@ pub(super) fn mixed<M: Formulas>(inputs: &TimedInputs<M::Params>, pack_each: boo
         .enumerate()
         .map(|(i, wo)| (i % 8, *wo))
         .collect();
-    let arrays: Vec<(usize, [f32; 3])> =
+    let numbered_arrays: Vec<(usize, [f32; 3])> =
         numbered.iter().map(|(i, wo)| (*i, wo.to_array())).collect();
     let eights = pairs(&packets(&inputs.wo), &xi_packets(&inputs.xi));
     let packed = Material8::pack(materials.each_ref());
-    let contenders = Contenders::new(
-        task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| {
-            M::point(&libm[*i], *wo, 0.0).sample(*xi)
-        }),
-        task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| {
-            M::point(&std[*i], platform(*wo), Platform(0.0)).sample(platform(*xi))
-        }),
+    let rows = joined(&arrays(&inputs.wo), &inputs.xi);
+    let mut contenders = Contenders::new(
+        task(
+            &pairs(&numbered_arrays, &inputs.xi),
+            move |((i, wo), xi)| M::point(&libm[*i], *wo, 0.0).sample(*xi),
+        ),
+        task(
+            &pairs(&numbered_arrays, &inputs.xi),
+            move |((i, wo), xi)| {
+                M::point(&std[*i], platform(*wo), Platform(0.0)).sample(platform(*xi))
+            },
+        ),
         task(&pairs(&numbered, &inputs.xi), move |((i, wo), xi)| {
             materials[*i].prepare(*wo).sample(*xi)
         }),
@@ -230,6 +277,20 @@ pub(super) fn mixed<M: Formulas>(inputs: &TimedInputs<M::Params>, pack_each: boo
             task(&eights, move |(wo, xi)| packed.prepare8(wo).sample8(xi))
         }
     });
+    if !pack_each {
+        contenders = contenders.levels(HITS, |level| {
+            table(&rows, materials.map(|material| material.with_level(level)))
+        });
+        if const { !M::CONSERVES } {
+            let materials = inputs
+                .params
+                .each_ref()
+                .map(|params| Material::new(&Conserving(M::MODEL), params));
+            contenders = contenders.levels(CONSERVING_HITS, |level| {
+                table(&rows, materials.map(|material| material.with_level(level)))
+            });
+        }
+    }
     let points = numbered
         .iter()
         .map(|(i, wo)| truth::<M>(&inputs.params[*i], &[*wo]))

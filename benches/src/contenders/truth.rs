@@ -36,17 +36,42 @@ impl Truth {
         Self { points, wi }
     }
 
-    /// Share of the answers that are wrong; 1 if there are not as many as there should be.
+    /// Share of the answers that are wrong; 1 if there are not as many as there should be. Answers that `conserve` energy have each
+    /// channel divided by its albedo where that is above 1.
     #[must_use]
-    pub fn wrong_share(&self, answers: &[Answer]) -> f64 {
+    pub fn wrong_share(&self, answers: &[Answer], conserve: bool) -> f64 {
         if answers.len() != self.wi.len() {
             return 1.0;
         }
         let per_point = self.wi.len() / self.points.len();
-        let wrong = answers
+        let factors: Vec<[f64; 3]> = self
+            .points
             .iter()
-            .enumerate()
-            .filter(|(i, answer)| !is_right(&*self.points[i / per_point], self.wi[*i], answer));
+            .map(|point| {
+                if conserve {
+                    factors(&**point)
+                } else {
+                    [1.0; 3]
+                }
+            })
+            .collect();
+        let wrong = answers.iter().enumerate().filter(|(i, answer)| {
+            let point = i / per_point;
+            !is_right(&*self.points[point], factors[point], self.wi[*i], answer)
+        });
         wrong.count() as f64 / answers.len() as f64
     }
+}
+
+/// The factors on the channels that keep their albedo at most 1.
+fn factors(point: &dyn Reference<f64>) -> [f64; 3] {
+    let lobes = point.albedo().0;
+    [0, 1, 2].map(|c| {
+        lobes
+            .iter()
+            .map(|lobe| lobe[c])
+            .sum::<f64>()
+            .max(1.0)
+            .recip()
+    })
 }
