@@ -247,6 +247,9 @@ impl Row<11, 4> for WeighEvals {
 /// The bits are those of [`Bsdf::weigh_columns`] if the values are those of [`Bsdf::eval_columns`] on the same level: a host of
 /// many models needs this once, and no kernel of weights per model.
 ///
+/// Candidates may be at hits of their own: weigh what [`Material::eval_hits`](crate::Material::eval_hits) gave. The second pass adds a
+/// tenth to its time.
+///
 /// # Errors
 ///
 /// If the columns differ in length; nothing is written then.
