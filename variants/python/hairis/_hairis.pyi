@@ -36,6 +36,15 @@ class Material:
     def sample_hits(
         self, wo: Column, xi: Column, h: Column | None = None, *, out: dict[str, Column] | None = None
     ) -> dict[str, Column]: ...
+    def eval_grad(
+        self,
+        wo: Column,
+        wi: Column,
+        d_value: Column,
+        h: Column | None = None,
+        *,
+        out: dict[str, Column] | None = None,
+    ) -> tuple[dict[str, Column], dict[str, float | tuple[float, ...]]]: ...
     def __eq__(self, other: object) -> bool: ...
     def __hash__(self) -> int: ...
 

@@ -1,5 +1,6 @@
 //! Columns of NumPy: borrowed, never copied.
 
+use hairis_capi::layout::Samples;
 use numpy::{
     PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
     PyUntypedArrayMethods,
@@ -25,6 +26,20 @@ fn shape(rows: usize, n: Option<usize>) -> String {
         format!("(3, {n})")
     } else {
         format!("({n},)")
+    }
+}
+
+/// The columns of samples as C has them.
+pub(crate) fn samples(outputs: &Outputs<'_>) -> Samples {
+    let [wi, value, pdf, weight, lobe] = outputs.rows[..] else {
+        unreachable!("five columns")
+    };
+    Samples {
+        wi,
+        value,
+        pdf: pdf[0],
+        weight,
+        lobe: lobe[0],
     }
 }
 
@@ -96,6 +111,16 @@ impl<'py> Input<'py> {
 
     pub(crate) fn rows(&self) -> [*const f32; 3] {
         rows_of(self.array.data().cast_const(), self.n)
+    }
+
+    /// The rows; of a column of one row, that and two empty ones.
+    pub(crate) fn slices(&self) -> [&[f32]; 3] {
+        let all = self.array.as_slice().unwrap_or_default();
+        let row = |row: usize| {
+            all.get(row * self.n..(row + 1) * self.n)
+                .unwrap_or_default()
+        };
+        [row(0), row(1), row(2)]
     }
 }
 

@@ -1,9 +1,9 @@
 //! Materials at a hit.
 
-use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES};
+use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, samples};
 use crate::fields::double;
-use crate::material::{Material, samples};
-use hairis_capi::layout::{Evals, LobeResult, RawBsdf};
+use crate::material::Material;
+use hairis_capi::layout::{BSDF_SIZE, Evals, LobeResult, RawBsdf};
 use hairis_capi::{columns, points};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -30,7 +30,15 @@ pub(crate) struct Bsdf {
 
 impl Bsdf {
     pub(crate) fn new(material: Py<Material>, wo: [f32; 3], h: f32) -> Self {
-        let raw = material.get().bsdf(wo, h);
+        let mut raw = RawBsdf {
+            head: [0; 4],
+            body: [0; BSDF_SIZE - 16],
+        };
+        // SAFETY: the material is initialised, and the BSDF of this call.
+        unsafe {
+            let of = &raw const material.get().raw;
+            points::hairis_prepare(&raw mut raw, of, wo[0], wo[1], wo[2], h);
+        }
         Self {
             material,
             wo,

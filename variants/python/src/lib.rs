@@ -6,6 +6,7 @@
 mod arrays;
 mod bsdf;
 mod fields;
+mod gradients;
 mod material;
 mod values;
 
@@ -43,7 +44,7 @@ fn level() -> String {
 /// >>> sorted(hairis.models())
 /// ['cauchy', 'chiang', 'gaussian', 'kajiya-kay']
 /// >>> hairis.models()["gaussian"]["choices"]
-/// ['published', 'matched-5', 'matched', 'matched-25']
+/// ['published', 'matched']
 #[pyfunction]
 fn models(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let all = PyDict::new(py);

@@ -1,17 +1,16 @@
 //! Materials.
 
-use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES};
+use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, samples};
 use crate::bsdf::Bsdf;
-use crate::fields::{Field, Model, Value, check, double, models_of_library, no_error};
-use crate::values::{c_string, energy_of, set, written};
-use core::ffi::CStr;
+use crate::fields::{Model, Value, check, double, models_of_library, no_error};
+use crate::gradients::{self, GRADIENTS, Inputs};
+use crate::values::{energy_of, params_of, written};
 use core::fmt::Write;
-use hairis_capi::layout::{Evals, Hits, MATERIAL_SIZE, Params, RawMaterial, Samples};
-use hairis_capi::{hits, points, setup};
+use hairis_capi::layout::{Evals, Hits, MATERIAL_SIZE, Params, RawMaterial};
+use hairis_capi::{hits, setup};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use std::ffi::CString;
 
 /// Hair: a model with checked parameters.
 ///
@@ -75,6 +74,22 @@ impl Material {
     }
 }
 
+/// Values by name: a float, a tuple of floats or a word each.
+fn dict_of<'py, N: IntoPyObject<'py>>(
+    py: Python<'py>,
+    values: impl IntoIterator<Item = (N, Value)>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for (name, value) in values {
+        match value {
+            Value::Number(x) => dict.set_item(name, x)?,
+            Value::Numbers(numbers) => dict.set_item(name, PyTuple::new(py, numbers)?)?,
+            Value::Word(word) => dict.set_item(name, word)?,
+        }
+    }
+    Ok(dict)
+}
+
 #[pymethods]
 impl Material {
     #[new]
@@ -86,56 +101,7 @@ impl Material {
         fields: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let (energy, code) = energy_of(energy)?;
-        let choice = models_of_library()
-            .find(|one| one.name() == model)
-            .and_then(|one| one.choice());
-        let given = |name: &str| fields.map_or(Ok(None), |fields| fields.get_item(name));
-        let word: Option<String> = match &choice {
-            Some(choice) => given(choice)?.map(|word| word.extract()).transpose()?,
-            None => None,
-        };
-        let word = word.map(|word| c_string(&word)).transpose()?;
-        let (model, preset) = (c_string(model)?, preset.map(c_string).transpose()?);
-        let pointer =
-            |text: &Option<CString>| text.as_deref().map_or(core::ptr::null(), CStr::as_ptr);
-        let mut error = no_error();
-        let mut params = Params {
-            model: 0,
-            given: 0,
-            numbers: [0.0; 32],
-        };
-        // SAFETY: the arguments are of this call.
-        let status = unsafe {
-            let names = (model.as_ptr(), pointer(&word), pointer(&preset));
-            setup::hairis_params_init(&raw mut params, names.0, names.1, names.2, &raw mut error)
-        };
-        check(status, &error)?;
-        let known = Model::at(params.model).fields();
-        let mut heads: Vec<(String, String)> = Vec::new();
-        for (name, value) in fields.into_iter().flatten() {
-            let name: String = name.extract()?;
-            if Some(&name) == choice.as_ref() {
-                continue;
-            }
-            let Some(field) = known.iter().find(|field| field.name() == name) else {
-                let names: Vec<_> = choice
-                    .iter()
-                    .cloned()
-                    .chain(known.iter().map(Field::name))
-                    .collect();
-                let names = names.join(", ");
-                return Err(PyValueError::new_err(format!(
-                    "field must be one of {names}, got \"{name}\""
-                )));
-            };
-            if let Some((_, other)) = heads.iter().find(|(head, _)| *head == field.head()) {
-                return Err(PyValueError::new_err(format!(
-                    "{other} and {name} exclude each other; give one"
-                )));
-            }
-            heads.push((field.head(), name));
-            set(&mut params, field, &value)?;
-        }
+        let (params, mut error) = (params_of(model, preset, fields)?, no_error());
         let mut raw = RawMaterial {
             head: [0; 4],
             body: [0; MATERIAL_SIZE - 16],
@@ -157,7 +123,7 @@ impl Material {
     ///
     /// Examples
     /// --------
-    /// >>> hair = hairis.Material("chiang", "blond", select="by-channel")
+    /// >>> hair = hairis.Material("cauchy", "blond", sampler="matched")
     /// >>> hairis.Material.from_json(hair.to_json()) == hair
     /// True
     #[staticmethod]
@@ -229,15 +195,7 @@ impl Material {
     /// Values of the fields: a float, a tuple of floats or a word each.
     #[getter]
     fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let fields = PyDict::new(py);
-        for (name, value) in self.given() {
-            match value {
-                Value::Number(x) => fields.set_item(name, x)?,
-                Value::Numbers(numbers) => fields.set_item(name, PyTuple::new(py, numbers)?)?,
-                Value::Word(word) => fields.set_item(name, word)?,
-            }
-        }
-        Ok(fields)
+        dict_of(py, self.given())
     }
 
     /// Names of the lobes, by slot: the numbers in the column "lobe" of samples.
@@ -400,6 +358,81 @@ impl Material {
         Ok(outputs.dict)
     }
 
+    /// Values of N directions, each at a hit of its own, and the derivatives of a loss of them.
+    ///
+    /// Parameters
+    /// ----------
+    /// wo, wi, h
+    ///     As in `eval_hits`.
+    /// d_value : ndarray, float32, shape (3, N), C-contiguous
+    ///     Derivative of the loss by each value, which reverse mode calls its cotangent.
+    /// out : dict, optional
+    ///     Columns to write, some of those below; others are not written.
+    ///
+    /// Returns
+    /// -------
+    /// columns : dict
+    ///     "value", shape (3, N), has the bits of `eval_hits`. "d_wo" and "d_wi", shape (3, N), and "d_h", shape (N,): derivatives
+    ///     of the loss. The dict is `out` if that is given.
+    /// d_fields : dict
+    ///     Derivatives by the fields that have numbers, in the form of `fields`: sums over all hits.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     A material of "gaussian" or "cauchy" whose energy is not "raw": the factor of energy has no derivatives.
+    ///
+    /// Examples
+    /// --------
+    /// >>> wo, wi = np.zeros((2, 3, 5), np.float32)
+    /// >>> wo[1], wi[2] = 1, 1
+    /// >>> hair = hairis.Material("gaussian", "blond", energy="raw")
+    /// >>> columns, d_fields = hair.eval_grad(wo, wi, np.ones((3, 5), np.float32))
+    /// >>> len(d_fields["beta"]), columns["d_wi"].shape
+    /// (3, (3, 5))
+    #[pyo3(signature = (wo, wi, d_value, h=None, *, out=None))]
+    fn eval_grad<'py>(
+        &self,
+        py: Python<'py>,
+        wo: &Bound<'py, PyAny>,
+        wi: &Bound<'py, PyAny>,
+        d_value: &Bound<'py, PyAny>,
+        h: Option<&Bound<'py, PyAny>>,
+        out: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+        let (wo, wi, h) = Self::inputs(wo, ("wi", wi), h)?;
+        let d_value = Input::new("d_value", d_value, 3, Some(wo.n))?;
+        let outputs = Outputs::new(py, out, &GRADIENTS, wo.n)?;
+        let model = self.described();
+        let read = gradients::values_of(&model.name(), &model.word(), self.given());
+        let (id, values) =
+            read.ok_or_else(|| PyValueError::new_err("the model has no derivatives"))?;
+        let (inputs, is_raw) = (
+            Inputs {
+                wo: &wo,
+                h: h.as_ref(),
+                wi: &wi,
+                d_value: &d_value,
+            },
+            self.energy == "raw",
+        );
+        let (rows, mut done) = (&outputs.rows[..], None);
+        let to = &mut done;
+        Detached(move || {
+            // SAFETY: the arrays have n numbers in each row, and are borrowed.
+            *to = Some(unsafe { gradients::eval_grad(id, &values, is_raw, &inputs, rows) });
+            0
+        })
+        .run(py)?;
+        let derivatives = match done {
+            Some(Ok(derivatives)) => derivatives,
+            Some(Err(refusal)) => return Err(refusal.raise(self.energy)),
+            None => unreachable!("the call ran"),
+        };
+        let d_fields = dict_of(py, gradients::fields_of(&derivatives))?;
+        Ok((outputs.dict, d_fields))
+    }
+
     pub(crate) fn __repr__(&self) -> String {
         let model = self.described();
         let mut text = format!(
@@ -435,34 +468,5 @@ impl Material {
             arguments.set_item(choice, model.word())?;
         }
         Ok(((model.name(),), arguments))
-    }
-}
-
-impl Material {
-    /// The BSDF at a hit.
-    pub(crate) fn bsdf(&self, wo: [f32; 3], h: f32) -> hairis_capi::layout::RawBsdf {
-        let mut raw = hairis_capi::layout::RawBsdf {
-            head: [0; 4],
-            body: [0; hairis_capi::layout::BSDF_SIZE - 16],
-        };
-        // SAFETY: the material is initialised, and the BSDF of this call.
-        unsafe {
-            points::hairis_prepare(&raw mut raw, &raw const self.raw, wo[0], wo[1], wo[2], h)
-        };
-        raw
-    }
-}
-
-/// The columns of samples as C has them.
-pub(crate) fn samples(outputs: &Outputs<'_>) -> Samples {
-    let [wi, value, pdf, weight, lobe] = outputs.rows[..] else {
-        unreachable!("five columns")
-    };
-    Samples {
-        wi,
-        value,
-        pdf: pdf[0],
-        weight,
-        lobe: lobe[0],
     }
 }

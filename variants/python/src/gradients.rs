@@ -1,0 +1,142 @@
+//! Derivatives of values by the fields of a material, by directions and by offsets.
+
+use crate::arrays::Input;
+use crate::fields::Value;
+use hairis::columns::HitColumns;
+use hairis::model::Model;
+use hairis::{Gaussian, Matched, ParamError, Published};
+use hairis_gradients::{GradColumns, GradError, Gradients, Weights};
+use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Parameters, Values};
+use pyo3::PyErr;
+use pyo3::exceptions::PyValueError;
+
+/// Columns of derivatives: names, and rows of each.
+pub(crate) const GRADIENTS: [(&str, usize); 4] =
+    [("value", 3), ("d_wo", 3), ("d_wi", 3), ("d_h", 1)];
+
+/// What keeps derivatives from being computed.
+pub(crate) enum Refusal {
+    Energy,
+    Param(ParamError),
+    Columns(GradError),
+}
+
+impl Refusal {
+    pub(crate) fn raise(self, energy: &str) -> PyErr {
+        PyValueError::new_err(match self {
+            Self::Energy => {
+                format!("energy must be \"raw\" for derivatives, got \"{energy}\"")
+            }
+            Self::Param(error) => error.to_string(),
+            Self::Columns(error) => error.to_string(),
+        })
+    }
+}
+
+/// Values of a model's fields, as its library has them.
+pub(crate) fn values_of(
+    model: &str,
+    word: &str,
+    given: impl Iterator<Item = (String, Value)>,
+) -> Option<(ModelId, Values)> {
+    let id = ModelId::find(model, (!word.is_empty()).then_some(word))?;
+    let mut values = Values::none(id.fields());
+    for (name, value) in given {
+        let set = match value {
+            Value::Number(x) => values.set(&name, &[x as f32]),
+            Value::Numbers(numbers) => {
+                let numbers: Vec<f32> = numbers.iter().map(|x| *x as f32).collect();
+                values.set(&name, &numbers)
+            }
+            Value::Word(word) => values.set_word(&name, &word),
+        };
+        set.ok()?;
+    }
+    Some((id, values))
+}
+
+/// The columns that a call reads: hits, directions, and derivatives of a loss by each value.
+pub(crate) struct Inputs<'a, 'py> {
+    pub(crate) wo: &'a Input<'py>,
+    pub(crate) h: Option<&'a Input<'py>>,
+    pub(crate) wi: &'a Input<'py>,
+    pub(crate) d_value: &'a Input<'py>,
+}
+
+/// Writes the columns, and returns the derivatives by fields.
+///
+/// # Safety
+///
+/// The outputs have as many numbers in each row as the inputs.
+pub(crate) unsafe fn eval_grad(
+    id: ModelId,
+    values: &Values,
+    is_raw: bool,
+    inputs: &Inputs<'_, '_>,
+    outputs: &[[*mut f32; 3]],
+) -> Result<Values<f64>, Refusal> {
+    let [value, d_wo, d_wi, d_h] = *outputs else {
+        unreachable!("four columns")
+    };
+    let n = inputs.wo.n;
+    // SAFETY: the caller's promise; a column that is left out is null.
+    let row =
+        |to: *mut f32| (!to.is_null()).then(|| unsafe { core::slice::from_raw_parts_mut(to, n) });
+    let three = |rows: [*mut f32; 3]| {
+        let [a, b, c] = rows.map(row);
+        Some([a?, b?, c?])
+    };
+    let mut d_material = [0.0; 128];
+    let hits = HitColumns {
+        wo: inputs.wo.slices(),
+        h: inputs.h.map(|h| h.slices()[0]),
+    };
+    let weights = Weights {
+        value: Some(inputs.d_value.slices()),
+        pdf: None,
+    };
+    let mut out = GradColumns {
+        value: three(value),
+        d_wo: three(d_wo),
+        d_wi: three(d_wi),
+        d_h: row(d_h[0]),
+        ..GradColumns::default()
+    };
+    macro_rules! each {
+        ($($(#[$doc:meta])* $variant:ident: $model:ty;)*) => {
+            match id {
+                $(ModelId::$variant => {
+                    if !is_raw && !<$model as Model>::CONSERVES {
+                        return Err(Refusal::Energy);
+                    }
+                    let params = Parameters::from_values(values).map_err(Refusal::Param)?;
+                    let gradients = Gradients::<$model>::new(&params);
+                    let sums = &mut d_material[..Gradients::<$model>::NUMBERS];
+                    out.d_material = Some(sums);
+                    gradients
+                        .eval_grad(hits, inputs.wi.slices(), weights, out)
+                        .map_err(Refusal::Columns)?;
+                    Ok(gradients.by_parameters(&d_material))
+                })*
+                _ => unreachable!("every model of the list has derivatives"),
+            }
+        };
+    }
+    hairis_variants::for_each_model!(each)
+}
+
+/// The derivatives by the fields that are given, as Python has them.
+pub(crate) fn fields_of(derivatives: &Values<f64>) -> Vec<(&'static str, Value)> {
+    let fields = derivatives.fields();
+    let kept = (0..fields.len()).filter(|index| derivatives.has_at(*index));
+    kept.filter_map(|index| {
+        let numbers = derivatives.numbers_at(index);
+        let value = match (fields[index].kind, numbers) {
+            (hairis_variants::Kind::Word(_), _) => return None,
+            (_, [x]) => Value::Number(*x),
+            _ => Value::Numbers(numbers.to_vec()),
+        };
+        Some((fields[index].name, value))
+    })
+    .collect()
+}

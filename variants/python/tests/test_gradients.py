@@ -1,0 +1,92 @@
+"""Derivatives: against differences, against JAX's reverse mode, and what they refuse."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import hairis
+import numpy as np
+import pytest
+from conftest import bits, directions
+from numpy.typing import NDArray
+
+DEFAULTS = [(name, preset) for name, model in hairis.models().items() for preset in model["presets"][1:3]]
+
+
+def case(n: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
+    """Hits, directions, derivatives of a loss, and offsets."""
+    rng = np.random.default_rng(5)
+    d_value = rng.uniform(-1, 1, (3, n)).astype(np.float32)
+    return directions(n, 1), directions(n, 2), d_value, rng.uniform(-0.9, 0.9, n).astype(np.float32)
+
+
+@pytest.mark.parametrize(("model", "preset"), DEFAULTS)
+def test_fields_against_differences(model: str, preset: str) -> None:
+    wo, wi, d_value, h = case(3000)
+    hair = hairis.Material(model, preset, energy="raw")
+    columns, d_fields = hair.eval_grad(wo, wi, d_value, h)
+    assert (bits(columns["value"]) == bits(hair.eval_hits(wo, wi, h)["value"])).all()
+    fields: dict[str, Any] = hair.fields
+    choice = {} if hair.choice is None else {hairis.models()[model]["choice"]: hair.choice}
+
+    def loss(name: str, value: Any) -> float:
+        other = hairis.Material(model, energy="raw", **choice, **{**fields, name: value})
+        return float((d_value * other.eval_hits(wo, wi, h)["value"].astype(np.float64)).sum())
+
+    scale = max(float(np.abs(np.asarray(d)).max()) for d in d_fields.values())
+    for name, got in d_fields.items():
+        value = np.atleast_1d(np.asarray(fields[name], np.float64))
+        for i in range(len(value)):
+            step = 2e-3 * max(abs(value[i]), 0.1)
+            ends = []
+            for sign in (1, -1):
+                moved = value.copy()
+                moved[i] += sign * step
+                ends.append(loss(name, moved if len(value) > 1 else float(moved[0])))
+            want = (ends[0] - ends[1]) / (2 * step)
+            assert np.atleast_1d(got)[i] == pytest.approx(want, rel=0.02, abs=2e-3 * scale), (name, i)
+
+
+def test_out_and_threads_of_columns() -> None:
+    wo, wi, d_value, _ = case(100)
+    hair = hairis.Material("cauchy", "red", energy="raw")
+    out = {"d_wi": np.empty((3, 100), np.float32)}
+    columns, d_fields = hair.eval_grad(wo, wi, d_value, out=out)
+    assert columns is out and d_fields.keys() == hair.fields.keys()
+    whole, same = hair.eval_grad(wo, wi, d_value)
+    assert same == d_fields and (bits(whole["d_wi"]) == bits(out["d_wi"])).all()
+
+
+def test_refusals() -> None:
+    wo, wi, d_value, _ = case(10)
+    with pytest.raises(ValueError, match='energy must be "raw" for derivatives, got "conserving"'):
+        hairis.Material("gaussian", "brown").eval_grad(wo, wi, d_value)
+    hairis.Material("chiang", "brown").eval_grad(wo, wi, d_value)
+    raw = hairis.Material("gaussian", "brown", energy="raw")
+    with pytest.raises(TypeError, match=r"d_value must be float32 of shape \(3, 10\)"):
+        raw.eval_grad(wo, wi, d_value[:, :9])
+    with pytest.raises(ValueError, match='out must have some of value, d_wo, d_wi, d_h, got "pdf"'):
+        raw.eval_grad(wo, wi, d_value, out={"pdf": np.empty(10, np.float32)})
+
+
+def test_jax(capsys: pytest.CaptureFixture[str]) -> None:
+    """The example's gradients are those of differences along a direction, and it recovers the widths that it hid."""
+    jax = pytest.importorskip("jax")
+    sys.path.insert(0, str(Path(__file__).parent.parent / "examples"))
+    import jax_hair
+
+    wo, wi = jax_hair.directions(2000, 3), jax_hair.directions(2000, 4)
+    fields = hairis.Material("chiang", "brown").fields
+    numbers = {name: jax.numpy.asarray(value) for name, value in fields.items() if not isinstance(value, str)}
+
+    def loss(scale: Any) -> Any:
+        return jax_hair.scatter("chiang", {**numbers, "beta_m": scale * numbers["beta_m"]}, wo, wi).sum()
+
+    step = 1e-2
+    want = (loss(1 + step) - loss(1 - step)) / (2 * step)
+    assert float(jax.grad(loss)(1.0)) == pytest.approx(float(want), rel=0.01)
+    jax_hair.main()
+    *_, found, hidden = [line.split("[")[1].rstrip("]").split() for line in capsys.readouterr().out.splitlines()]
+    assert np.allclose(np.asarray(found, float), np.asarray(hidden, float), rtol=1e-2)
