@@ -14,7 +14,7 @@ use pyo3::exceptions::PyValueError;
 pub(crate) const GRADIENTS: [(&str, usize); 4] =
     [("value", 3), ("d_wo", 3), ("d_wi", 3), ("d_h", 1)];
 
-/// What keeps derivatives from being computed.
+/// Reasons for which there are no derivatives.
 pub(crate) enum Refusal {
     Energy,
     Param(ParamError),
