@@ -56,6 +56,11 @@ int main(void) {
 }' > "$dir/main.c"
 cc -std=c99 -Wall -Wextra -Werror "$dir/main.c" -o "$dir/main" -lm && "$dir/main" || { echo "FAIL the header of chiang"; exit 1; }
 refused 'must be one of' shader --model fur --target c
+# Promise: a C compiler and the folder of all models are enough to shade a hair, and the example prints the lines of the README.
+"$hairis" shader --out "$dir/source" > /dev/null
+shaded=$(cd "$dir/source" && cc -std=c99 -O2 -Wall -Wextra -pedantic -Werror example.c -o example -lm && ./example)
+[ "$shaded" = "$(sed -n '/^```text$/,/^```$/p' "$dir/source/README.md" | grep -v '^```')" ] || { echo "FAIL the folder's example: $shaded"; exit 1; }
+refused 'must be a new folder' shader --out "$dir"
 
 # Promise: eval answers a request.
 answer=$(echo '{"model":"cauchy","params":{"alpha":[-0.13,0.065,0.2],"beta":[0.13,0.065,0.26],"gamma_tt":0.17,"gamma_g":0.17,

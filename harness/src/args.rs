@@ -40,7 +40,8 @@ default of c, `gpu` that of the other targets: see variants/shaders/README.md.
 
   hairis shader --model gaussian --target c > hairis_gaussian.h
   hairis shader --model chiang --target wgsl --call eval_hit --call sample_hit > chiang.wgsl
-  hairis shader --material red.json --target glsl --call eval_hit --only value";
+  hairis shader --material red.json --target glsl --call eval_hit --only value
+  hairis shader --out DIR";
 
 /// The subcommands, each with its flags.
 #[derive(Clone, Debug, Subcommand)]
@@ -162,14 +163,14 @@ pub struct Claims {
 #[derive(Clone, Debug, clap::Args)]
 pub struct Shader {
     /// Name of the model, as in `hairis eval` [default: that of the material]
-    #[arg(long, value_name = "NAME", required_unless_present = "material")]
+    #[arg(long, value_name = "NAME", required_unless_present_any = ["material", "out"])]
     pub model: Option<String>,
     /// Word of the model's sampler, or of chiang's `select`, as in `hairis eval` [default: the first]
     #[arg(long, visible_alias = "select", value_name = "WORD")]
     pub sampler: Option<String>,
     /// The language
-    #[arg(long, value_enum)]
-    pub target: ShaderTarget,
+    #[arg(long, value_enum, required_unless_present = "out")]
+    pub target: Option<ShaderTarget>,
     /// Print this function alone; may be given several times [default: all]
     #[arg(long = "call", value_name = "CALL", value_enum)]
     pub calls: Vec<ShaderCall>,
@@ -188,6 +189,10 @@ pub struct Shader {
     /// Rounding of products and sums [default: exact for c, gpu for the others]
     #[arg(long, value_enum)]
     pub arithmetic: Option<ShaderArithmetic>,
+    /// Write a folder in place of standard output: a file for each model and language that the other flags leave open, a README and
+    /// examples; made if missing
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// Language of `hairis shader`.

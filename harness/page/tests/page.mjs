@@ -5,7 +5,7 @@ import { createServer } from 'node:http';
 import { readFileSync, readdirSync, statSync } from 'node:fs';
 import { mkdtemp } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
-import { extname, join } from 'node:path';
+import { basename, extname, join } from 'node:path';
 import { exr, radiance } from './maps.mjs';
 
 const [folder, hairis, executablePath] = process.argv.slice(2);
@@ -463,7 +463,22 @@ async function tuft() {
   console.log('the tuft with WebGPU and without, light from files, wrong files');
 }
 
-const all = { sizes, times, sliders, values, comparison, albedos, states, views, tuft };
+/// The example of `hairis shader --out` prints the lines of its README.
+async function example() {
+  const out = await mkdtemp(join(tmpdir(), 'hairis-')),
+    page = await browser.newPage();
+  execFileSync(hairis, ['shader', '--model', 'gaussian', '--target', 'wgsl', '--out', out]);
+  await page.route(`${address}source/*`, route => route.fulfill({ path: join(out, basename(route.request().url())) }));
+  await page.goto(`${address}source/example.html`);
+  await page.waitForFunction(() => !document.body.textContent.includes('Shading'));
+  const shaded = await page.locator('pre').textContent(),
+    [, expected] = readFileSync(join(out, 'README.md'), 'utf8').match(/```text\n(.*?)\n```/s);
+  check('the example shades a hair', shaded === expected, `${shaded} and not ${expected}`);
+  console.log('the example of the generated folder shades a hair on WebGPU');
+  await page.close();
+}
+
+const all = { sizes, times, sliders, values, comparison, albedos, states, views, tuft, example };
 for (const name of process.argv[5]?.split(',') ?? Object.keys(all)) {
   try {
     await all[name]();

@@ -1,5 +1,7 @@
 //! `hairis shader`: a model as source of another language.
 
+mod folder;
+
 use crate::args::{Shader, ShaderArithmetic, ShaderCall, ShaderTarget};
 use hairis::Material;
 use hairis_instruments::error::Error;
@@ -10,16 +12,23 @@ use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
-/// Prints the model on standard output.
+/// Prints the model on standard output, or models into a folder.
 ///
 /// # Errors
 ///
-/// [`Error::Usage`] if there is no such model, field or material, [`Error::Write`] if standard output fails.
+/// [`Error::Usage`] if there is no such model, field or material, [`Error::Write`] or [`Error::Output`] if the output fails.
 pub fn run(flags: &Shader) -> Result<(), Error> {
     let materials = flags.material.as_deref().map_or(Ok(Vec::new()), read)?;
+    if let Some(dir) = &flags.out {
+        return folder::write(flags, &materials, dir);
+    }
     let id = model(flags, &materials)?;
-    let text = id.visit(Source {
+    let Some(target) = flags.target else {
+        return Err(Error::Usage("--target must name a language".to_owned()));
+    };
+    let (_, text) = id.visit(Source {
         flags,
+        target,
         materials: &materials,
     })?;
     let mut out = io::stdout().lock();
@@ -98,18 +107,19 @@ fn model(flags: &Shader, materials: &[(String, MaterialSpec)]) -> Result<ModelId
     })
 }
 
-/// Prints a model.
+/// Prints a model: the program, and its source.
 struct Source<'a> {
     flags: &'a Shader,
+    target: ShaderTarget,
     materials: &'a [(String, MaterialSpec)],
 }
 
 impl Visitor for Source<'_> {
-    type Output = Result<Vec<u8>, Error>;
+    type Output = Result<(Program, Vec<u8>), Error>;
 
     fn visit<M: Registered>(self) -> Self::Output {
         let flags = self.flags;
-        let arithmetic = match (flags.arithmetic, flags.target) {
+        let arithmetic = match (flags.arithmetic, self.target) {
             (Some(ShaderArithmetic::Exact), _) | (None, ShaderTarget::C) => Target::Exact,
             (Some(ShaderArithmetic::Fused), _) => Target::Fused,
             (Some(ShaderArithmetic::Gpu), _) | (None, _) => Target::Gpu,
@@ -140,15 +150,19 @@ impl Visitor for Source<'_> {
         }
         let functions = functions(flags, &program)?;
         program.keep(functions);
-        let language = match flags.target {
+        let language = match self.target {
             ShaderTarget::C => Language::C,
             ShaderTarget::Wgsl => Language::Wgsl,
             ShaderTarget::Glsl => Language::Glsl,
             ShaderTarget::Hlsl => Language::Hlsl,
             ShaderTarget::Msl => Language::Msl,
-            ShaderTarget::Spirv => return spirv(&program),
+            ShaderTarget::Spirv => {
+                let words = spirv(&program)?;
+                return Ok((program, words));
+            }
         };
-        Ok(print(&program, language).into_bytes())
+        let text = print(&program, language).into_bytes();
+        Ok((program, text))
     }
 }
 

@@ -3,6 +3,7 @@
 use super::{Run, good, run};
 use serde_json::Value;
 use std::fs;
+use std::path::Path;
 
 fn print(args: &[&str]) -> String {
     let printed: Run = run(&[&["shader"], args].concat(), b"");
@@ -131,6 +132,107 @@ fn materials_of_a_file_are_functions() {
     fs::write(file, request.to_string()).unwrap();
     let error = refused(&["--material", file, "--target", "c"]);
     assert!(error.contains("beta"), "{error}");
+}
+
+/// Names of the files in a folder, sorted.
+fn names(dir: &Path) -> Vec<String> {
+    let entries = fs::read_dir(dir).unwrap();
+    let mut names: Vec<_> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_folder_has_every_model_in_every_language() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("new/folder");
+    let to = out.to_str().unwrap();
+    let printed = print(&["--out", to]);
+    let index = fs::read_to_string(out.join("README.md")).unwrap();
+    for model in [
+        "gaussian",
+        "gaussian_matched",
+        "cauchy",
+        "cauchy_matched",
+        "kajiya_kay",
+        "chiang",
+    ] {
+        for ending in ["h", "wgsl", "glsl", "hlsl", "metal"] {
+            let file = format!("hairis_{model}.{ending}");
+            assert!(out.join(&file).is_file(), "{file}");
+        }
+    }
+    let names = names(&out);
+    for file in names.iter().filter(|name| *name != "README.md") {
+        assert!(
+            index.contains(&format!("[`{file}`]({file})"))
+                || index.contains(&format!("[{file}]({file})")),
+            "{file}"
+        );
+    }
+    let source = names
+        .iter()
+        .filter(|name| name.starts_with("hairis_"))
+        .count();
+    assert!(printed.starts_with(&format!("{source} files")), "{printed}");
+    assert_eq!(
+        fs::read_to_string(out.join("hairis_gaussian.h")).unwrap(),
+        print(&["--model", "gaussian", "--target", "c"]) + "\n"
+    );
+    for word in ["MODEL", "TYPE", "VERSION", "EXPECTED"] {
+        for file in ["README.md", "example.c", "example.html"] {
+            let text = fs::read_to_string(out.join(file)).unwrap();
+            assert!(!text.contains(word), "{file}: {word}");
+        }
+    }
+    // A second run replaces the files of the first.
+    fs::write(out.join("example.c"), "").unwrap();
+    print(&["--out", to]);
+    assert_eq!(self::names(&out), names);
+    assert!(fs::metadata(out.join("example.c")).unwrap().len() > 0);
+}
+
+#[test]
+fn a_folder_has_what_the_flags_name() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().to_str().unwrap();
+    let flags = ["--model", "kajiya-kay", "--target", "c", "--out", out];
+    print(&flags);
+    let files = ["README.md", "example.c", "hairis_kajiya_kay.h"];
+    assert_eq!(names(dir.path()), files);
+    let example = fs::read_to_string(dir.path().join("example.c")).unwrap();
+    assert!(example.contains("HairisKajiyaKayParams params = hairis_kajiya_kay_params_brown();"));
+    // An example needs functions that are not there.
+    let some = dir.path().join("some");
+    print(&[&flags[..5], &[some.to_str().unwrap(), "--call", "eval"]].concat());
+    assert_eq!(names(&some), ["README.md", "hairis_kajiya_kay.h"]);
+}
+
+#[test]
+fn folders_of_others_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
+    fs::write(path("file"), "").unwrap();
+    fs::create_dir(path("project")).unwrap();
+    fs::write(path("project/README.md"), "# Mine").unwrap();
+    for (out, word) in [
+        (path("file"), "cannot write"),
+        (path("file/folder"), "cannot write"),
+        (path("project"), "--out must be a new folder"),
+        (String::new(), "a value is required"),
+    ] {
+        let error = refused(&["--model", "chiang", "--target", "c", "--out", &out]);
+        assert!(error.contains(word) && error.contains(&out), "{error}");
+    }
+    assert_eq!(names(&dir.path().join("project")), ["README.md"]);
+    // Nothing is written where anything is refused.
+    for flags in [&["--sampler", "best"][..], &["--model", "fur"]] {
+        let error = refused(&[flags, &["--out", &path("none")]].concat());
+        assert!(error.contains("must be one of"), "{error}");
+    }
+    assert!(!dir.path().join("none").exists());
 }
 
 #[test]
