@@ -1,7 +1,8 @@
 #!/bin/bash
 # Promise: the page works. In headless Chromium: no error on the console; every slider moves a picture; values, V and L1 are those of
 # `hairis`; links, undo and JSON restore; WebGPU and the module shade alike, and the page does without WebGPU; at most 250,000 bytes
-# without the shaders, a map within 16 ms, the first paint within 300 ms. Needs node, and npm's playwright-core and esbuild.
+# without the shaders, a map within 16 ms, the first paint within 300 ms. The example of `hairis shader --out` shades a hair.
+# Needs node, and npm's playwright-core and esbuild.
 #
 # Where the toolchain has no wasm32 (`rustup target add wasm32-unknown-unknown`), Debian's rustc-web builds it, and where there is no
 # Chromium, Debian's chromium-headless-shell runs it: they are unpacked under $TOOLS (900 MB), not installed.
@@ -25,18 +26,11 @@ if [ ! -d "$(rustc --print sysroot)/lib/rustlib/wasm32-unknown-unknown" ]; then
   # RUSTC_BOOTSTRAP makes the compiler look like a nightly: for this build alone.
   bootstrap=(env RUSTC="$tools/rustc" RUSTC_BOOTSTRAP=1)
 fi
-chromium=
-for name in chromium-headless-shell google-chrome chromium; do chromium=${chromium:-$(command -v $name || true)}; done
-if [ -z "$chromium" ]; then
-  unpack chromium chromium-headless-shell
-  wrapped chromium usr/lib/chromium/chromium-headless-shell
-  chromium=$tools/chromium-headless-shell
-fi
+browser
 
 # The warnings of the module as a library of this machine; the build for wasm32 takes those of its dependencies as they are.
 cargo clippy -q --locked --manifest-path harness/page/Cargo.toml --target-dir "$target/page-build" -- -D warnings
 hairis=${HAIRIS:-$(.ci/release.sh)/hairis}
 HAIRIS=$hairis "${bootstrap[@]}" harness/page/build.sh "${arguments[@]}"
-npm install --silent --no-save --prefix "$tools/page" playwright-core@1.65.1
 cp harness/page/tests/*.mjs "$tools/page"
 node "$tools/page/page.mjs" "$target/page" "$hairis" "$chromium" "$@"

@@ -1,7 +1,8 @@
 #!/bin/bash
 # Promise: generated source is what it says. C and C++ (gcc, clang), SPIR-V and GLSL on a Vulkan driver have the bits of one lane
-# for every model; plain WGSL has its accuracy there, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C and PTX compile; gradients in C
-# have the bits of the graph. Debian's packages: gcc, g++, clang, glslang-tools, spirv-tools, libvulkan-dev, mesa-vulkan-drivers.
+# for every model; plain WGSL has its accuracy there and on WebGPU of headless Chromium, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C
+# and PTX compile; gradients in C have the bits of the graph. Debian's packages: gcc, g++, clang, glslang-tools, spirv-tools,
+# libvulkan-dev, mesa-vulkan-drivers; node and npm, and Chromium as in .ci/page.sh.
 # A tool that is missing is installed where apt can, and named where it cannot: its tests are skipped.
 #
 #   .ci/shaders.sh             4096 cases per model and function
@@ -20,5 +21,12 @@ export HAIRIS_CASES=${1:-4096}
 for driver in /usr/share/vulkan/icd.d/lvp_icd*.json; do
   [ -e "$driver" ] && export VK_ICD_FILENAMES=$driver VK_DRIVER_FILES=$driver
 done
+# Chromium brings its own Tint and SwiftShader.
+target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
+export tools=${TOOLS:-$target/tools} HAIRIS_CHROMIUM HAIRIS_PLAYWRIGHT
+HAIRIS_PLAYWRIGHT=$tools/page
+mkdir -p "$tools"
+HAIRIS_CHROMIUM=$(bash -ec '. .ci/unpack; browser; node --version; "$chromium" --version; echo "$chromium"' | tail -n 1) ||
+  { unset HAIRIS_CHROMIUM; echo "node, npm or Chromium is missing: tests on WebGPU are skipped"; }
 # The build of the test command: another would take longer than the tests.
 cargo test -q --locked -p hairis-shaders --test main -- --ignored --nocapture

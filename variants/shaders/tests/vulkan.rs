@@ -1,4 +1,5 @@
-//! Shaders on a Vulkan driver: the bits of one lane where arithmetic keeps its order, its accuracy where it may not.
+//! Shaders on a Vulkan driver, and on WebGPU in a browser: the bits of one lane where arithmetic keeps its order, its accuracy where
+//! it may not.
 
 use crate::gradients::Weighted;
 use crate::languages::{compile_glsl, tool, write_words};
@@ -11,32 +12,63 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
 
-const RUNNER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vulkan.c");
+/// Program that compiles and runs a compute shader.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Host {
+    /// A Vulkan driver, behind naga.
+    Vulkan,
+    /// WebGPU of Chromium: Tint and `SwiftShader`.
+    Browser,
+}
 
-/// The program that runs a shader, and a folder for its files.
+/// A host that is there, and a folder for its files.
 pub(crate) struct Driver {
     pub(crate) dir: TempDir,
-    runner: PathBuf,
+    host: Host,
+    program: PathBuf,
 }
 
 impl Driver {
-    /// `None` where there is no compiler or no Vulkan.
-    pub(crate) fn new() -> Option<Self> {
+    /// `None` where a compiler and Vulkan, or the browser that `HAIRIS_CHROMIUM` names, are missing.
+    pub(crate) fn new(host: Host) -> Option<Self> {
+        let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
         let dir = TempDir::new().expect("a folder for shaders");
-        let runner = dir.path().join("vulkan");
-        let arguments = [
-            "-std=c99",
-            "-O1",
-            RUNNER,
-            "-o",
-            &runner.to_string_lossy(),
-            "-lvulkan",
-        ];
-        if let Err(error) = tool("gcc", &arguments)? {
-            println!("no Vulkan to link with: skipped: {error}");
-            return None;
+        let program = match host {
+            Host::Browser => {
+                if std::env::var_os("HAIRIS_CHROMIUM").is_none() {
+                    println!("HAIRIS_CHROMIUM names no browser: skipped");
+                    return None;
+                }
+                tests.join("webgpu.mjs")
+            }
+            Host::Vulkan => {
+                let [source, program] = [tests.join("vulkan.c"), dir.path().join("vulkan")];
+                let [from, to] = [&source, &program].map(|path| path.to_string_lossy());
+                let arguments = ["-std=c99", "-O1", &from, "-o", &to, "-lvulkan"];
+                if let Err(error) = tool("gcc", &arguments)? {
+                    println!("no Vulkan to link with: skipped: {error}");
+                    return None;
+                }
+                program
+            }
+        };
+        Some(Self { dir, host, program })
+    }
+
+    /// Module of a program as plain WGSL, with an entry point per function.
+    fn plain(&self, program: &Program) -> PathBuf {
+        let source = print(program, Language::Wgsl) + &shader_driver(program, Language::Wgsl);
+        let module = self.dir.path().join("plain");
+        match self.host {
+            Host::Browser => fs::write(&module, source).expect("the folder is ours"),
+            Host::Vulkan => {
+                write_words(
+                    &module,
+                    &spirv::translate(&source).expect("naga accepts it"),
+                );
+            }
         }
-        Some(Self { dir, runner })
+        module
     }
 
     pub(crate) fn run(
@@ -49,7 +81,14 @@ impl Driver {
         let [input, output] = ["input", "output"].map(|name| self.dir.path().join(name));
         let bytes: Vec<u8> = inputs.iter().flat_map(|x| x.to_le_bytes()).collect();
         fs::write(&input, bytes).expect("the folder is ours");
-        let said = Command::new(&self.runner)
+        let mut command = match self.host {
+            Host::Browser => Command::new("node"),
+            Host::Vulkan => Command::new(&self.program),
+        };
+        if self.host == Host::Browser {
+            command.arg(&self.program);
+        }
+        let said = command
             .args([module, Path::new(entry), &input, &output])
             .arg(function.inputs().len().to_string())
             .arg(function.output().len().to_string())
@@ -81,7 +120,9 @@ impl Visitor for &Kept {
     type Output = ();
 
     fn visit<M: Registered>(self) {
-        let Some(driver) = Driver::new() else { return };
+        let Some(driver) = Driver::new(Host::Vulkan) else {
+            return;
+        };
         let cases = Case::<M>::many(case_count(4096), 44);
         // `fma` of WGSL may be two operations, and is on this driver.
         for target in [Target::Exact, Target::Gpu] {
@@ -154,13 +195,16 @@ fn quantiles(got: &[f32], exact: &[f64]) -> [f64; 3] {
     })
 }
 
-struct Plain;
+#[derive(Clone, Copy)]
+struct Plain(Host);
 
-impl Visitor for &Plain {
+impl Visitor for Plain {
     type Output = ();
 
     fn visit<M: Registered>(self) {
-        let Some(vulkan) = Driver::new() else { return };
+        let Some(driver) = Driver::new(self.0) else {
+            return;
+        };
         let cases = Case::<M>::many(case_count(4096), 45);
         let inputs: Vec<f32> = cases
             .iter()
@@ -187,13 +231,8 @@ impl Visitor for &Plain {
             let mut program = Program::of::<M>(target);
             let calls = CALLS.map(|call| program.function(call).clone());
             program.keep(calls.to_vec());
-            let source = print(&program, Language::Wgsl) + &shader_driver(&program, Language::Wgsl);
-            let module = vulkan.dir.path().join("module.spv");
-            write_words(
-                &module,
-                &spirv::translate(&source).expect("naga accepts it"),
-            );
-            let got = vulkan.run(&module, Call::EvalHit.name(), &calls[0], &inputs);
+            let module = driver.plain(&program);
+            let got = driver.run(&module, Call::EvalHit.name(), &calls[0], &inputs);
             let of_shader = quantiles(&got, &exact);
             println!(
                 "{} {target:?}: {of_shader:?}, one lane {of_one:?}",
@@ -211,7 +250,7 @@ impl Visitor for &Plain {
                 .iter()
                 .flat_map(|case| case.arguments(Call::SampleHit))
                 .collect();
-            let samples = vulkan.run(&module, Call::SampleHit.name(), &calls[1], &samples);
+            let samples = driver.run(&module, Call::SampleHit.name(), &calls[1], &samples);
             for ((case, got), sample) in cases.iter().zip(got.chunks(4)).zip(samples.chunks(11)) {
                 let is_number = |x: &[f32; 3]| x.iter().all(|x| x.is_finite());
                 if !is_number(&case.wo) || !is_number(&case.wi) {
@@ -233,50 +272,61 @@ impl Visitor for &Plain {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn plain_shaders_have_the_accuracy_of_one_lane() {
-    every_model(&Plain);
+    every_model(Plain(Host::Vulkan));
 }
 
-struct Gradients;
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn shaders_of_a_browser_have_the_accuracy_of_one_lane() {
+    every_model(Plain(Host::Browser));
+}
 
-impl Visitor for &Gradients {
+/// Compares gradients with those of the graph, bit by bit.
+fn check_bits(cases: &Weighted, got: &[f32], name: &str) {
+    let gradient = &cases.gradient;
+    let expected = cases.all.iter();
+    let expected: Vec<_> = expected
+        .map(|inputs| gradient.run(inputs, Rounding::Twice))
+        .map(|results| results.into_iter().map(unsigned).collect::<Vec<_>>())
+        .collect();
+    let count = differing(gradient, got, &expected);
+    let places: Vec<_> = gradient.output().places().collect();
+    let pairs = got.iter().zip(expected.iter().flatten());
+    if let Some((at, (a, b))) = pairs.enumerate().find(|(_, (a, b))| !same(**a, **b)) {
+        println!("{name}: {} is {a}, not {b}", places[at % places.len()]);
+    }
+    assert_eq!(count, 0, "{name}: gradients that differ from the graph's");
+}
+
+#[derive(Clone, Copy)]
+struct Gradients(Host);
+
+impl Visitor for Gradients {
     type Output = ();
 
     fn visit<M: Registered>(self) {
-        let Some(driver) = Driver::new() else { return };
-        let module = driver.dir.path().join("module.spv");
+        let Some(driver) = Driver::new(self.0) else {
+            return;
+        };
         for target in [Target::Exact, Target::Gpu] {
             let mut program = Program::of::<M>(target);
             let cases =
                 [Call::Material, Call::EvalHit].map(|call| Weighted::new::<M>(&program, call));
             program.keep(cases.each_ref().map(|cases| cases.gradient.clone()).into());
-            let run = |words: &[u32], cases: &Weighted| {
-                write_words(&module, words);
+            let run = |module: &Path, cases: &Weighted| {
                 let (gradient, inputs) = (&cases.gradient, cases.all.concat());
-                driver.run(&module, gradient.name(), gradient, &inputs)
+                driver.run(module, gradient.name(), gradient, &inputs)
             };
-            let kept = spirv::module(&program).expect("naga accepts it");
-            let source = print(&program, Language::Wgsl) + &shader_driver(&program, Language::Wgsl);
-            let plain = spirv::translate(&source).expect("naga accepts it");
+            let plain = driver.plain(&program);
+            let kept = driver.dir.path().join("kept");
+            write_words(&kept, &spirv::module(&program).expect("naga accepts it"));
             for cases in &cases {
                 let gradient = &cases.gradient;
                 let name = format!("{} {} {target:?}", program.name(), gradient.name());
-                let expected = cases.all.iter();
-                let expected: Vec<_> = expected
-                    .map(|inputs| gradient.run(inputs, Rounding::Twice))
-                    .map(|results| results.into_iter().map(unsigned).collect::<Vec<_>>())
-                    .collect();
-                let got: Vec<_> = run(&kept, cases).into_iter().map(unsigned).collect();
-                let count = differing(gradient, &got, &expected);
-                if count > 0 {
-                    let places: Vec<_> = gradient.output().places().collect();
-                    for (at, (a, b)) in got.iter().zip(expected.iter().flatten()).enumerate() {
-                        if !same(*a, *b) {
-                            println!("{name}: {} is {a}, not {b}", places[at % places.len()]);
-                            break;
-                        }
-                    }
+                if self.0 == Host::Vulkan {
+                    let got: Vec<_> = run(&kept, cases).into_iter().map(unsigned).collect();
+                    check_bits(cases, &got, &name);
                 }
-                assert_eq!(count, 0, "{name}: gradients that differ from the graph's");
                 let got = run(&plain, cases);
                 let got = got.chunks(gradient.output().len()).map(<[f32]>::to_vec);
                 cases.check(&got.collect::<Vec<_>>(), &format!("{name} in WGSL"));
@@ -288,5 +338,11 @@ impl Visitor for &Gradients {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn gradients_of_shaders_are_those_of_differences() {
-    every_model(&Gradients);
+    every_model(Gradients(Host::Vulkan));
+}
+
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn gradients_in_a_browser_are_those_of_differences() {
+    every_model(Gradients(Host::Browser));
 }
