@@ -1,8 +1,9 @@
 #!/bin/bash
 # Promise: generated source is what it says. C and C++ (gcc, clang), SPIR-V and GLSL on a Vulkan driver have the bits of one lane
 # for every model; plain WGSL has its accuracy there and on WebGPU of headless Chromium, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C
-# and PTX compile; gradients in C have the bits of the graph. Debian's packages: gcc, g++, clang, glslang-tools, spirv-tools,
-# libvulkan-dev, mesa-vulkan-drivers; node and npm, and Chromium as in .ci/page.sh.
+# and PTX compile; gradients in C have the bits of the graph; the example draws the same picture on wgpu and on the CPU.
+# Debian's packages: gcc, g++, clang, glslang-tools, spirv-tools, libvulkan-dev, mesa-vulkan-drivers; node, npm, and Chromium as in
+# .ci/page.sh.
 # A tool that is missing is installed where apt can, and named where it cannot: its tests are skipped.
 #
 #   .ci/shaders.sh             4096 cases per model and function
@@ -30,3 +31,10 @@ HAIRIS_CHROMIUM=$(bash -ec '. .ci/unpack; browser; node --version; "$chromium" -
   { unset HAIRIS_CHROMIUM; echo "node, npm or Chromium is missing: tests on WebGPU are skipped"; }
 # The build of the test command: another would take longer than the tests.
 cargo test -q --locked -p hairis-shaders --test main -- --ignored --nocapture
+# The bounds of the example are those of the driver in software. Mesa asks for XDG_RUNTIME_DIR.
+if [ -n "${VK_DRIVER_FILES:-}" ]; then
+  picture=$(mktemp --suffix .png)
+  XDG_RUNTIME_DIR=${XDG_RUNTIME_DIR:-/tmp} cargo run -q --locked --manifest-path variants/shaders/examples/tuft/Cargo.toml \
+    --target-dir "$target/tuft" -- "$picture"
+  rm "$picture"
+fi
