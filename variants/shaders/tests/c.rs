@@ -76,6 +76,21 @@ pub(crate) fn compiled(program: &Program) -> Option<(TempDir, PathBuf)> {
     Some((dir, binary))
 }
 
+/// The driver of a program in Metal by g++, which finds Metal's operations beside the tests. `None` if there is no g++.
+pub(crate) fn compiled_metal(program: &Program) -> Option<(TempDir, PathBuf)> {
+    if !exists("g++") {
+        return None;
+    }
+    let dir = TempDir::new().expect("a folder for the program");
+    let main = driver(program, Language::C).replace("HairisVec3", "float3");
+    let source = print(program, Language::Msl) + &main;
+    let include = concat!("-I", env!("CARGO_MANIFEST_DIR"), "/tests");
+    let flags = ["-std=c++14", "-O1", "-ffp-contract=off", include];
+    let binary = compile(dir.path(), &source, "g++", &flags);
+    let binary = binary.unwrap_or_else(|error| panic!("{} in Metal: {error}", program.name()));
+    Some((dir, binary))
+}
+
 fn source(program: &Program) -> String {
     print(program, Language::C) + &driver(program, Language::C)
 }
@@ -148,7 +163,9 @@ fn clang_keeps_products_and_sums_apart() {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn cpp_has_the_bits_of_one_lane() {
-    bits("g++", &["-std=c++17", "-O1", "-ffp-contract=off"]);
+    for compiler in ["g++", "clang++"] {
+        bits(compiler, &["-std=c++17", "-O1", "-ffp-contract=off"]);
+    }
 }
 
 #[derive(Clone, Copy)]

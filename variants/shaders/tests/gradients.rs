@@ -134,22 +134,24 @@ impl Visitor for Finite {
     fn visit<M: Registered>(self) {
         for target in [Target::Exact, Target::Fused, Target::GpuNative] {
             let program = Program::of::<M>(target);
-            let gradient = program.function(Call::EvalHit).gradient();
-            for case in Case::<M>::many(512, 48) {
-                let is_unit = |x: [f32; 3]| {
-                    let square: f32 = x.iter().map(|x| x * x).sum();
-                    (square - 1.0).abs() < 1e-3
-                };
-                if !is_unit(case.wo) || !is_unit(case.wi) || case.h.is_nan() {
-                    continue;
+            for call in [Call::EvalHit, Call::SampleHit] {
+                let function = program.function(call);
+                let gradient = function.gradient();
+                let weights = vec![1.0; function.output().len()];
+                for case in Case::<M>::many(512, 48) {
+                    let is_unit = |x: [f32; 3]| {
+                        let square: f32 = x.iter().map(|x| x * x).sum();
+                        (square - 1.0).abs() < 1e-3
+                    };
+                    let is_uniform = case.xi.iter().all(|xi| (0.0..1.0).contains(xi));
+                    if !is_unit(case.wo) || !is_unit(case.wi) || case.h.is_nan() || !is_uniform {
+                        continue;
+                    }
+                    let inputs = [&case.arguments(call)[..], &weights].concat();
+                    let got = gradient.run(&inputs, Rounding::Once);
+                    let name = format!("{} {} {target:?}", program.name(), function.name());
+                    assert!(got.iter().all(|x| x.is_finite()), "{name}: {case}: {got:?}");
                 }
-                let inputs = [&case.arguments(Call::EvalHit)[..], &[1.0; 4]].concat();
-                let got = gradient.run(&inputs, Rounding::Once);
-                let name = program.name();
-                assert!(
-                    got.iter().all(|x| x.is_finite()),
-                    "{name} {target:?}: {case}: {got:?}"
-                );
             }
         }
     }

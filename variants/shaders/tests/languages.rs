@@ -88,6 +88,17 @@ fn hlsl(program: &Program) -> String {
     )
 }
 
+/// The last function of a program in HLSL, as SPIR-V.
+pub(crate) fn compile_hlsl(program: &Program, dir: &Path) -> Option<PathBuf> {
+    let (file, out) = (dir.join("main.hlsl"), dir.join("hlsl.spv"));
+    fs::write(&file, hlsl(program)).expect("the folder is ours");
+    let [from, to] = [&file, &out].map(|path| path.to_string_lossy());
+    let arguments = ["-D", "-V", "-S", "comp", "-e", "main", &from, "-o", &to];
+    let said = tool("glslangValidator", &arguments)?;
+    said.unwrap_or_else(|error| panic!("{} in HLSL: {error}", program.name()));
+    Some(out)
+}
+
 #[derive(Clone, Copy)]
 struct Glslang;
 
@@ -103,13 +114,7 @@ impl Visitor for Glslang {
         if let Some(Err(error)) = tool("spirv-val", &[&compiled.to_string_lossy()]) {
             panic!("{} in GLSL: {error}", program.name());
         }
-        let (file, out) = (dir.path().join("main.hlsl"), dir.path().join("hlsl.spv"));
-        fs::write(&file, hlsl(&program)).expect("the folder is ours");
-        let (file, out) = (file.to_string_lossy(), out.to_string_lossy());
-        let arguments = ["-D", "-V", "-S", "comp", "-e", "main", &file, "-o", &out];
-        if let Some(Err(error)) = tool("glslangValidator", &arguments) {
-            panic!("{} in HLSL: {error}", program.name());
-        }
+        compile_hlsl(&program, dir.path());
         let module = spirv::module(&program).expect("naga accepts it");
         let file = dir.path().join("module.spv");
         write_words(&file, &module);
@@ -125,72 +130,71 @@ fn glslang_accepts_glsl_and_hlsl() {
     every_model(Glslang);
 }
 
-/// The C header compiles as `OpenCL` C and for PTX, to code without a branch or a call of ours.
-#[test]
-#[ignore = "slow: .ci/shaders.sh runs it"]
-fn clang_compiles_opencl_and_ptx() {
-    let program = Program::of::<hairis::Published<hairis::Gaussian>>(Target::Exact);
-    let dir = TempDir::new().expect("a folder for shaders");
-    let kernel = "\nHAIRIS_KERNEL void shade(HAIRIS_GLOBAL const float *wi, HAIRIS_GLOBAL float *out) {\n    \
-                  const HairisGaussianEval e = hairis_gaussian_eval_hit(hairis_gaussian_material_brown(), \
-                  hairis_vec3(0.0f, 1.0f, 0.0f), 0.0f, hairis_vec3(wi[0], wi[1], wi[2]));\n    \
-                  out[0] = e.value.x; out[1] = e.pdf;\n}\n";
-    let header = dir.path().join("hairis.h");
-    fs::write(&header, print(&program, Language::C)).expect("the folder is ours");
-    let source = format!("#include \"{}\"{kernel}", header.to_string_lossy());
-    let out = dir.path().join("out");
-    let out = out.to_string_lossy();
-    let opencl = dir.path().join("main.cl");
-    let names = "#define HAIRIS_KERNEL __kernel\n#define HAIRIS_GLOBAL __global\n";
-    fs::write(&opencl, format!("{names}{source}")).expect("the folder is ours");
-    let opencl = opencl.to_string_lossy();
-    let arguments = [
-        "-x",
-        "cl",
-        "-cl-std=CL1.2",
-        "-Xclang",
-        "-finclude-default-header",
-        "-target",
-        "spir64",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
-        "-O2",
-        "-S",
-        "-emit-llvm",
-        &opencl,
-        "-o",
-        &out,
-    ];
-    if let Some(Err(error)) = tool("clang", &arguments) {
-        panic!("OpenCL C: {error}");
-    }
-    let arguments = [
-        "-x",
-        "cl",
-        "-cl-std=CL1.2",
-        "-Xclang",
-        "-finclude-default-header",
-        "-target",
-        "nvptx64-nvidia-nvcl",
-        "-O2",
-        "-ffp-contract=off",
-        "-S",
-        &opencl,
-        "-o",
-        &out,
-    ];
-    match tool("clang", &arguments) {
-        None => {}
-        Some(Err(error)) => panic!("PTX: {error}"),
-        Some(Ok(())) => {
-            let ptx = fs::read_to_string(&*out).expect("the compiler wrote it");
-            // Without a library of OpenCL its square roots stay calls.
-            for word in ["\tbra", "hairis_", "fma.rn"] {
-                assert!(!ptx.contains(word), "PTX has {word}");
+#[derive(Clone, Copy)]
+struct OpenCl;
+
+impl Visitor for OpenCl {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        let program = Program::of::<M>(Target::Exact);
+        let name = program.name();
+        let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
+        let capitals: String = name.split('_').map(capital).collect();
+        // Instructions of the processor: without a library of OpenCL the two functions would be calls.
+        let source = format!(
+            "#ifdef __NVPTX__\n#define sqrt __nvvm_sqrt_rn_f\n#define fabs __builtin_fabsf\n#endif\n{}\n\
+             __kernel void shade(__global const Hairis{capitals}Params *params, __global const float *x,\n    \
+             __global Hairis{capitals}Eval *eval, __global Hairis{capitals}Sample *sample) {{\n    \
+             const Hairis{capitals}Material m = hairis_{name}_material(*params);\n    \
+             const HairisVec3 wo = hairis_vec3(x[0], x[1], x[2]), wi = hairis_vec3(x[4], x[5], x[6]);\n    \
+             *eval = hairis_{name}_eval_hit(m, wo, x[3], wi);\n    \
+             *sample = hairis_{name}_sample_hit(m, wo, x[3], wi);\n}}\n",
+            print(&program, Language::C)
+        );
+        let dir = TempDir::new().expect("a folder for shaders");
+        let [file, out] = ["main.cl", "out"].map(|name| dir.path().join(name));
+        fs::write(&file, source).expect("the folder is ours");
+        let [file, out] = [file, out].map(|path| path.to_string_lossy().into_owned());
+        let compile = |target: &[&str]| {
+            let usual = [
+                "-x",
+                "cl",
+                "-cl-std=CL1.2",
+                "-O2",
+                "-ffp-contract=off",
+                "-S",
+            ];
+            let builtin = [
+                "-Xclang",
+                "-finclude-default-header",
+                "-Wall",
+                "-Wextra",
+                "-Werror",
+            ];
+            let files = [&file, "-o", &out];
+            let said = tool("clang", &[&usual[..], &builtin, target, &files].concat())?;
+            said.unwrap_or_else(|error| panic!("{name} for {target:?}: {error}"));
+            Some(fs::read_to_string(&out).expect("the compiler wrote it"))
+        };
+        compile(&["-target", "spir64", "-emit-llvm"]);
+        if let Some(ptx) = compile(&["-target", "nvptx64-nvidia-nvcl"]) {
+            assert!(ptx.contains("sqrt.rn.f32"), "{name}: its square roots");
+            for word in ["bra", "call", "fma.rn"] {
+                let mut lines = ptx.lines().filter(|line| !line.contains("//"));
+                let line =
+                    lines.find(|line| line.split_whitespace().any(|part| part.starts_with(word)));
+                assert_eq!(line, None, "{name}: PTX with {word}");
             }
         }
     }
+}
+
+/// The C header compiles as `OpenCL` C, and for PTX to code without a branch or a call.
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn clang_compiles_opencl_and_ptx() {
+    every_model(OpenCl);
 }
 
 #[derive(Clone, Copy)]

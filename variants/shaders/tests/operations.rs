@@ -1,7 +1,7 @@
 //! Each operation alone, in every language that runs here: a fault in a printer's table is found.
 
-use crate::c::{compiled, run};
-use crate::languages::{compile_glsl, write_words};
+use crate::c::{compiled, compiled_metal, run};
+use crate::languages::{compile_glsl, compile_hlsl, write_words};
 use crate::support::{Random, differing, same};
 use crate::vulkan::{Driver, Host};
 use hairis::simd::trace::Op;
@@ -83,6 +83,18 @@ fn every_operation_is_right_in_c() {
     }
 }
 
+/// No compiler of Metal runs here: its operations are written in C++.
+#[test]
+fn every_operation_is_right_in_metal() {
+    for target in [Target::Exact, Target::Gpu] {
+        let program = every_operation(target);
+        if let Some((_dir, binary)) = compiled_metal(&program) {
+            let got = run(&binary, "operations", &operands());
+            check(&program, &got, &expected(&program, Rounding::Once), "Metal");
+        }
+    }
+}
+
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn every_operation_is_right_on_a_driver() {
@@ -101,6 +113,10 @@ fn every_operation_is_right_on_a_driver() {
         if let Some(module) = compile_glsl(&program, driver.dir.path()) {
             let got = driver.run(&module, "main", function, &operands());
             check(&program, &got, &expected, "GLSL");
+        }
+        if let Some(module) = compile_hlsl(&program, driver.dir.path()) {
+            let got = driver.run(&module, "main", function, &operands());
+            check(&program, &got, &expected, "HLSL");
         }
     }
 }
