@@ -62,6 +62,17 @@ shaded=$(cd "$dir/source" && cc -std=c99 -O2 -Wall -Wextra -pedantic -Werror exa
 [ "$shaded" = "$(sed -n '/^```text$/,/^```$/p' "$dir/source/README.md" | grep -v '^```')" ] || { echo "FAIL the folder's example: $shaded"; exit 1; }
 refused 'must be a new folder' shader --out "$dir"
 
+# Promise: a fitted material is a request of eval, and nearer than its start.
+"$hairis" fit --from gaussian --to cauchy --starts 1 --out "$dir/fit" > "$dir/fitted.json" 2> /dev/null
+python3 - "$dir" <<'END' | "$hairis" eval | grep -q '"pdf_lobe"' || { echo "FAIL fit"; exit 1; }
+import json, sys
+fit = json.load(open(sys.argv[1] + "/fit/fit.json"))
+assert fit["distance"] < fit["distance_of_start"], fit
+print(json.dumps(json.load(open(sys.argv[1] + "/fitted.json")) | {"wo": [0, 1, 0], "wi": [0.6, 0.8, 0]}))
+END
+refused 'must be one of' fit --from fur --to cauchy --out "$dir/fit"
+refused 'must be one of' fit --from gaussian --to cauchy --fix fur --out "$dir/fit"
+
 # Promise: eval answers a request.
 answer=$(echo '{"model":"cauchy","params":{"alpha":[-0.13,0.065,0.2],"beta":[0.13,0.065,0.26],"gamma_tt":0.17,"gamma_g":0.17,
 "phi_g":0.6,"i_r":[0.3,0.3,0.3],"i_tt":[0.8,0.6,0.4],"i_trt":[0.7,0.5,0.3],"i_g":0.5},"wo":[0,1,0],"wi":[0.6,0.8,0]}' |

@@ -38,6 +38,8 @@ class Record:
     def caption(self, directory):
         """Record, machine, commit and date."""
         link = os.path.relpath(RECORDS + self.name, directory)
+        if self.fact("CPU") == "any":
+            return f"*[Record]({link}), which a test writes and holds.*"
         cpu = re.sub(r"\((R|TM)\)", "", self.fact("CPU"))
         facts = f"{cpu}, commit {self.fact('commit')[:7]}, {self.fact('date')}"
         return f"*[Record]({link}) of {facts}.*"
@@ -153,7 +155,24 @@ def speed():
     return record, header, rows
 
 
-TABLES = {"conserving": conserving, "gradients": gradients, "hand": hand, "hits": hits, "speed": speed}
+def refits():
+    """L1 distance of models before and after a refit: medians over the looks, and the worst."""
+    record = Record("refits.csv")
+    pairs = {}
+    for row in record.rows:
+        pairs.setdefault((row["from"], row["to"]), []).append(row)
+    share = lambda figures, of: f"{100 * of(figures):.3g}%"
+    body = []
+    for (one, other), rows in pairs.items():
+        column = lambda name: [float(row[name]) for row in rows if row[name]]
+        best = column("best_factor")
+        body.append([f"{one} to {other}", str(len(rows)), share(column("equal"), statistics.median),
+                     share(best, statistics.median) if best else "-",
+                     share(column("fitted"), statistics.median), share(column("fitted"), max), share(column("error"), max)])
+    return record, ["", "looks", "start", "best factor on the widths", "fitted", "worst", "error, at most"], body
+
+
+TABLES = {"conserving": conserving, "gradients": gradients, "hand": hand, "hits": hits, "refits": refits, "speed": speed}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 

@@ -43,6 +43,13 @@ default of c, `gpu` that of the other targets: see variants/shaders/README.md.
   hairis shader --material red.json --target glsl --call eval_hit --only value
   hairis shader --out DIR";
 
+const FIT: &str = "\
+Standard output has the fitted material, as `hairis eval` reads it. Files in DIR: fitted.json, the same; fit.json, the distance by
+view, by lobe and by start; report.html, and its plots in figures/. The same flags give the same values.
+
+  hairis fit --from gaussian --preset brown --to cauchy > brown.json
+  hairis fit --material mine.json --to chiang --norm l2 --fix eta";
+
 /// The subcommands, each with its flags.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
@@ -60,6 +67,9 @@ pub enum Command {
     /// Print a model as source of another language, which needs no other file
     #[command(after_help = SHADER)]
     Shader(Shader),
+    /// Find the parameters of a model whose look is nearest to that of another, and print them
+    #[command(after_help = FIT)]
+    Fit(Fit),
     /// Join the parts of a study that ran in shards into the same tables as one run
     Merge(Merge),
 }
@@ -245,6 +255,74 @@ pub enum ShaderArithmetic {
     Gpu,
     /// Likewise, with the target's powers and logarithms to the base 2
     GpuNative,
+}
+
+/// Flags of `hairis fit`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Fit {
+    /// Name of the model that is fitted to
+    #[arg(
+        long,
+        value_name = "NAME",
+        required_unless_present = "material",
+        conflicts_with = "material"
+    )]
+    pub from: Option<String>,
+    /// Preset of that model [default: its first]
+    #[arg(long, value_name = "NAME", requires = "from")]
+    pub preset: Option<String>,
+    /// Material that is fitted to, in the JSON of `hairis eval`, in place of --from
+    #[arg(long, value_name = "FILE")]
+    pub material: Option<PathBuf>,
+    /// Fit to many looks of --from in place of one: DIR gets fits.csv, and standard output a table
+    #[arg(long, value_enum, conflicts_with_all = ["preset", "material"], requires = "from")]
+    pub over: Option<FitOver>,
+    /// Name of the model whose parameters are wanted
+    #[arg(long, value_name = "NAME")]
+    pub to: String,
+    /// Norm of the difference of `S cos theta_i`
+    #[arg(long, value_enum, default_value_t = FitNorm::L1)]
+    pub norm: FitNorm,
+    /// Inclination of a view, in degrees; may be repeated [default: eight views of equal solid angle]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    pub theta_o_deg: Vec<f64>,
+    /// Weight of each view of --theta-o-deg, in their order [default: 1 each]
+    #[arg(long, value_name = "X", requires = "theta_o_deg")]
+    pub weight: Vec<f64>,
+    /// Field of the second model that keeps its value of the start; may be repeated
+    #[arg(long, value_name = "FIELD")]
+    pub fix: Vec<String>,
+    /// Number of starts: the first has the values of the first model, or is the first preset
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u8).range(1..))]
+    pub starts: u8,
+    /// Seed of the directions and of the starts
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Folder for the results; made if missing
+    #[arg(long, value_name = "DIR", default_value = "out/fit")]
+    pub out: PathBuf,
+}
+
+/// Looks of `hairis fit --over`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FitOver {
+    /// Every preset of the model
+    Presets,
+    /// Hair of the grid of `hairis study --quick`, from its inclinations
+    Quick,
+    /// Hair of the whole grid
+    Full,
+}
+
+/// Norm of `hairis fit`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FitNorm {
+    /// Light that is reflected elsewhere, not at all, or in addition
+    L1,
+    /// Root mean square, in which peaks count more
+    L2,
+    /// L1 after a blur of 10 degrees
+    Blurred,
 }
 
 /// Arguments of `hairis merge`.

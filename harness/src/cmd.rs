@@ -3,6 +3,7 @@
 pub mod claims;
 pub mod compare;
 pub mod eval;
+pub mod fit;
 pub mod merge;
 pub mod shader;
 pub mod study;
@@ -31,6 +32,7 @@ pub fn run(command: &Command) -> Result<(), Error> {
         Command::Claims(flags) => claims::run(flags),
         Command::Merge(flags) => merge::run(flags),
         Command::Shader(flags) => shader::run(flags),
+        Command::Fit(flags) => fit::run(flags),
     }
 }
 

@@ -26,6 +26,7 @@ mod lobes;
 mod measure;
 mod output;
 
+pub(crate) use best::least;
 pub use blur::SIGMA_DEG;
 pub use measure::{Differences, Norms};
 pub(crate) use output::{Summary, albedo_ratio};
@@ -141,7 +142,7 @@ impl Difference {
                 })?;
                 Ok::<_, Error>(sum)
             };
-            Ok::<_, Error>([best::least(squares)?])
+            Ok::<_, Error>([least(squares)?])
         })?;
         let blur = Blur::new(SIGMA_DEG.to_radians(), LATITUDES, LATITUDES);
         let rows = (cells.par_iter().zip(&hair)).map(|(cell, hair)| {
@@ -190,7 +191,7 @@ fn figures(hair: &HairValues, best_of_grid: f64, blur: &Blur) -> Vec<Differences
         Width::Area => f64::from(Cauchy::AREA.width_factor()),
         Width::BestOfGrid => best_of_grid,
         Width::BestOfCell => {
-            let Ok(best) = best::least(|k| Ok::<_, Infallible>(hair.square_error(k)));
+            let Ok(best) = least(|k| Ok::<_, Infallible>(hair.square_error(k)));
             best
         }
     });

@@ -8,6 +8,7 @@ pub mod compare;
 pub mod difference;
 pub mod efficiency;
 pub mod figures;
+pub mod fit;
 pub mod journal;
 pub mod lights;
 pub mod materials;

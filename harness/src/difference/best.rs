@@ -13,7 +13,7 @@ const PRECISION: f64 = 1e-6;
 /// # Errors
 ///
 /// The first of `f`.
-pub(super) fn least<E>(mut f: impl FnMut(f64) -> Result<f64, E>) -> Result<f64, E> {
+pub(crate) fn least<E>(mut f: impl FnMut(f64) -> Result<f64, E>) -> Result<f64, E> {
     const STEPS: i32 = 16;
     let [low, high] = RANGE.map(f64::ln);
     let at = |step: i32| low + (high - low) * f64::from(step) / f64::from(STEPS);

@@ -1,0 +1,245 @@
+//! The distance and its derivatives as a problem of an optimiser.
+
+use super::points::Points;
+use super::variables::Variables;
+use super::{FitConfig, Norm};
+use basin::{
+    BoxBounds, ConstraintDescription, ConstraintSet, ConstraintSolveError, Constraints,
+    CostFunction, Executor, FirstOrderState, Gradient, Lbfgsb,
+};
+use hairis::ParamError;
+use hairis::columns::HitColumns;
+use hairis_gradients::{Differentiable, GradColumns, Gradients, Visitor, Weights, visit};
+use hairis_materials::material::single;
+use hairis_variants::{ModelId, Parameters, Values};
+
+/// Iterations after which the optimiser ends.
+const ITERATIONS: u64 = 600;
+/// Pairs of steps that the optimiser keeps.
+const HISTORY: usize = 20;
+/// Relative reduction of the distance below which the optimiser ends.
+const REDUCTION: f64 = 1e-14;
+/// Share of the mean below which L1 is smooth.
+const SMOOTH: f64 = 0.01;
+
+/// Finds the nearest values from a start. Returns them, and the number of iterations.
+pub(super) fn minimise(
+    model: ModelId,
+    start: &Values,
+    points: &Points,
+    config: &FitConfig,
+) -> Result<(Values, u64), ParamError> {
+    let variables = Variables::new(start, &config.fixed);
+    let x = variables.start();
+    if x.is_empty() {
+        return Ok((*start, 0));
+    }
+    let [lower, upper] = variables.bounds();
+    let problem = Distance {
+        model,
+        points,
+        variables: &variables,
+        norm: config.norm,
+        scale: Scale::new(points, config.norm),
+        rows: Rows::new(points),
+        lower,
+        upper,
+    };
+    let solver = Lbfgsb::new()
+        .with_m_capacity(HISTORY)
+        .with_relative_cost_reduction_tolerance(REDUCTION);
+    let run = Executor::new(problem, solver, FirstOrderState::new(x))
+        .max_iter(ITERATIONS)
+        .run();
+    match run {
+        Ok(result) => Ok((variables.values(result.best_param()), result.iter())),
+        Err(ConstraintSolveError::Evaluation(error)) => Err(error),
+        Err(error) => {
+            unreachable!("the bounds are in order: {error}")
+        }
+    }
+}
+
+/// Norm of the look, and the magnitude below which L1 is smooth.
+#[derive(Clone, Copy, Debug)]
+struct Scale {
+    norm: f64,
+    smooth: f64,
+}
+
+impl Scale {
+    fn new(points: &Points, norm: Norm) -> Self {
+        let views = 0..points.views.len();
+        let own = |norm| -> f64 {
+            let own = |view| points.sums(view, &points.look[view], norm)[1];
+            views.clone().map(own).sum()
+        };
+        let weights = points.weights.iter().flatten();
+        let total: f64 = weights.map(|[weight, _]| 3.0 * weight).sum();
+        Self {
+            norm: own(norm).max(f64::MIN_POSITIVE),
+            smooth: SMOOTH * own(Norm::L1).max(f64::MIN_POSITIVE) / total.max(f64::MIN_POSITIVE),
+        }
+    }
+}
+
+/// Hits and directions, one row per view, offset and direction.
+#[derive(Debug)]
+struct Rows {
+    wo: [Vec<f32>; 3],
+    h: Vec<f32>,
+    wi: [Vec<f32>; 3],
+}
+
+impl Rows {
+    fn new(points: &Points) -> Self {
+        let mut rows = Self {
+            wo: [const { Vec::new() }; 3],
+            h: Vec::new(),
+            wi: [const { Vec::new() }; 3],
+        };
+        for (view, wi) in points.views.iter().zip(&points.wi) {
+            for h in &points.offsets {
+                for (k, x) in view.to_array().into_iter().enumerate() {
+                    rows.wo[k].resize(rows.wo[k].len() + wi[0].len(), x);
+                    rows.wi[k].extend(&wi[k]);
+                }
+                rows.h.resize(rows.h.len() + wi[0].len(), *h);
+            }
+        }
+        rows
+    }
+}
+
+/// The distance of a model from a look.
+struct Distance<'a> {
+    model: ModelId,
+    points: &'a Points,
+    variables: &'a Variables,
+    norm: Norm,
+    scale: Scale,
+    rows: Rows,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+}
+
+impl Distance<'_> {
+    /// The distance, and the weights of S: its derivatives by the values of every row.
+    fn distance(
+        &self,
+        values: &Values,
+        mut weights: Option<&mut [Vec<f32>; 3]>,
+    ) -> Result<f64, ParamError> {
+        let Self { points, scale, .. } = self;
+        let other = points.values(&self.model.material(values)?);
+        let mut distance = 0.0;
+        for (view, other) in other.iter().enumerate() {
+            let difference: Vec<[f64; 3]> = (other.iter().zip(&points.look[view]))
+                .map(|(a, b)| core::array::from_fn(|channel| a[channel] - b[channel]))
+                .collect();
+            let (compared, shares) = points.compared(view, &difference, self.norm);
+            let slope = |(values, [weight, cos]): (&[f64; 3], &[f64; 2])| {
+                values.map(|x| {
+                    let (term, slope) = match self.norm {
+                        Norm::L1 | Norm::Blurred => {
+                            let root = x.hypot(scale.smooth);
+                            (root - scale.smooth, x / root)
+                        }
+                        Norm::L2 => (x * x * cos, 2.0 * x * cos),
+                    };
+                    distance += weight * term / scale.norm;
+                    weight * slope / scale.norm / points.offsets.len() as f64
+                })
+            };
+            let slopes: Vec<[f64; 3]> = compared.iter().zip(shares.iter()).map(slope).collect();
+            if let Some(weights) = &mut weights {
+                let slopes = points.derivatives(view, slopes, self.norm);
+                for _ in &points.offsets {
+                    for (channel, to) in weights.iter_mut().enumerate() {
+                        to.extend(slopes.iter().map(|slope| single(slope[channel])));
+                    }
+                }
+            }
+        }
+        Ok(distance)
+    }
+}
+
+/// Derivatives by the numbers of a model's fields.
+struct ByNumbers<'a> {
+    rows: &'a Rows,
+    values: &'a Values,
+    weights: &'a [Vec<f32>; 3],
+}
+
+impl Visitor for ByNumbers<'_> {
+    type Output = Result<Values<f64>, ParamError>;
+
+    fn visit<M: Differentiable>(self) -> Self::Output {
+        // The first entry of each name: others have the same S.
+        if const { ModelId::of::<M>().is_default() } {
+            let gradients = Gradients::<M>::new(&M::Params::from_values(self.values)?);
+            let Rows { wo, h, wi } = self.rows;
+            let hits = HitColumns {
+                wo: wo.each_ref().map(|column| &column[..]),
+                h: Some(h),
+            };
+            let weights = Weights {
+                value: Some(self.weights.each_ref().map(|column| &column[..])),
+                pdf: None,
+            };
+            let mut sums = vec![0.0; Gradients::<M>::NUMBERS];
+            let out = GradColumns {
+                d_material: Some(&mut sums),
+                ..GradColumns::default()
+            };
+            gradients
+                .eval_grad(hits, wi.each_ref().map(|column| &column[..]), weights, out)
+                .expect("columns of one length");
+            Ok(gradients.by_parameters(&sums))
+        } else {
+            unreachable!("a fit is of the first entry of its name")
+        }
+    }
+}
+
+impl CostFunction for Distance<'_> {
+    type Param = Vec<f64>;
+    type Output = f64;
+    type Error = ParamError;
+
+    fn cost(&self, x: &Vec<f64>) -> Result<f64, ParamError> {
+        self.distance(&self.variables.values(x), None)
+    }
+}
+
+impl Gradient for Distance<'_> {
+    type Gradient = Vec<f64>;
+
+    fn gradient(&self, x: &Vec<f64>) -> Result<Vec<f64>, ParamError> {
+        Ok(self.cost_and_gradient(x)?.1)
+    }
+
+    fn cost_and_gradient(&self, x: &Vec<f64>) -> Result<(f64, Vec<f64>), ParamError> {
+        let values = self.variables.values(x);
+        let mut weights = [const { Vec::new() }; 3];
+        let distance = self.distance(&values, Some(&mut weights))?;
+        let by_number = visit(
+            self.model,
+            ByNumbers {
+                rows: &self.rows,
+                values: &values,
+                weights: &weights,
+            },
+        )?;
+        Ok((distance, self.variables.derivatives(x, &by_number)))
+    }
+}
+
+impl Constraints for Distance<'_> {
+    type Set = ConstraintSet<BoxBounds<Vec<f64>>>;
+
+    fn constraints(&self) -> <Self::Set as ConstraintDescription>::Borrowed<'_> {
+        ConstraintSet::new().with_bounds(BoxBounds::new(Some(&self.lower), Some(&self.upper)))
+    }
+}

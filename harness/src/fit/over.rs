@@ -1,0 +1,166 @@
+//! Fits to many looks, as a table.
+
+use super::{FitConfig, Look, Residual, first_start, fit, residuals};
+use crate::difference::Summary;
+use crate::study::Grid;
+use hairis::ParamError;
+use hairis_instruments::columns::Columns;
+use hairis_instruments::table::{Table, number};
+use hairis_variants::{ModelId, Parameters, Values};
+use rayon::prelude::*;
+
+/// A look that was fitted, from the inclinations of the fit.
+#[derive(Clone, Debug)]
+pub struct Refit {
+    /// Name of the look.
+    pub name: String,
+    /// The fitted values.
+    pub values: Values,
+    /// Distance of all views of each of the [`rules`](super::rules).
+    pub distances_of_rules: Vec<f64>,
+    /// Distance of all views.
+    pub distance: f64,
+    /// Error of that distance.
+    pub error: f64,
+    /// Residuals of the first start, by view.
+    pub before: Vec<Residual>,
+    /// Residuals of the fitted values, by view.
+    pub after: Vec<Residual>,
+}
+
+/// The hair of a grid, each once: `from` with its values, and a name of its axes.
+///
+/// # Errors
+///
+/// Never for [`Grid::FULL`] and [`Grid::QUICK`].
+pub fn hair_of(grid: Grid, from: ModelId) -> Result<Vec<(String, Look)>, ParamError> {
+    let views = grid.theta_o_deg.len();
+    let cells = grid.cells().step_by(views.max(1));
+    let look = |cell: crate::study::Cell| {
+        let [beta, gamma_tt, gamma_g, phi_g, i_g, _] = cell.values();
+        let name = format!(
+            "beta_r {beta}° gamma_tt {gamma_tt}° gamma_g {gamma_g}° phi_g {phi_g}° i_g {i_g}"
+        );
+        let values = cell.params()?.values();
+        Ok((
+            name,
+            Look {
+                model: from,
+                values,
+            },
+        ))
+    };
+    cells.map(look).collect()
+}
+
+/// Fits `to` to every look.
+///
+/// # Errors
+///
+/// If a value of a look is out of its range.
+pub fn refits(
+    looks: &[(String, Look)],
+    to: ModelId,
+    config: &FitConfig,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Result<Vec<Refit>, ParamError> {
+    let refit = |(name, look): &(String, Look)| {
+        let found = fit(look, to, config)?;
+        let start = Look {
+            model: found.found.model,
+            values: first_start(look, to),
+        };
+        let refit = Refit {
+            name: name.clone(),
+            values: found.found.values,
+            distances_of_rules: found.distances_of_rules,
+            distance: found.distance,
+            error: found.error,
+            before: residuals(look, &start, &found.points)?,
+            after: residuals(look, &found.found, &found.points)?,
+        };
+        progress(1);
+        Ok(refit)
+    };
+    looks.par_iter().map(refit).collect()
+}
+
+/// Rows of the refits: a look and a view each.
+///
+/// | column | content |
+/// |---|---|
+/// | `look`, `theta_o_deg` | name of the look, inclination of the viewer in degrees |
+/// | `l1_start`, `l1`, `l2_start`, `l2` | distance of `S cos theta_i` per channel, relative to the look's norm, at the start and fitted |
+/// | `l1_mean_start`, `l1_mean` | L1 of the mean of RGB |
+/// | `albedo`, `albedo_start`, `albedo_fitted` | integrals of `S cos theta_i`, mean of RGB |
+/// | `field` or `field[i]` | fitted values, angles in radians |
+#[must_use]
+pub fn columns(refits: &[Refit]) -> Columns {
+    let rows = || {
+        refits.iter().flat_map(|refit| {
+            let views = refit.before.iter().zip(&refit.after);
+            views.map(move |(before, after)| (refit, before, after))
+        })
+    };
+    let columns = Columns::default()
+        .text("look", rows().map(|(refit, ..)| refit.name.clone()))
+        .number("theta_o_deg", rows().map(|(_, _, row)| row.theta_o_deg))
+        .number("l1_start", rows().map(|(_, row, _)| row.l1))
+        .number("l1", rows().map(|(_, _, row)| row.l1))
+        .number("l2_start", rows().map(|(_, row, _)| row.l2))
+        .number("l2", rows().map(|(_, _, row)| row.l2))
+        .number("l1_mean_start", rows().map(|(_, row, _)| row.l1_mean))
+        .number("l1_mean", rows().map(|(_, _, row)| row.l1_mean))
+        .number("albedo", rows().map(|(_, _, row)| row.albedo_from))
+        .number("albedo_start", rows().map(|(_, row, _)| row.albedo_to))
+        .number("albedo_fitted", rows().map(|(_, _, row)| row.albedo_to));
+    let values = rows().map(|(refit, ..)| refit.values);
+    value_columns(columns, &values.collect::<Vec<_>>())
+}
+
+/// Adds the numbers of the fields of the first of some values, of one model: `field` or `field[i]`.
+pub(crate) fn value_columns(mut columns: Columns, all: &[Values]) -> Columns {
+    let Some(first) = all.first() else {
+        return columns;
+    };
+    for (index, field) in first.fields().iter().enumerate() {
+        let count = field.kind.width();
+        for place in (0..count).filter(|_| first.has_at(index)) {
+            let name = if count == 1 {
+                field.name.to_owned()
+            } else {
+                format!("{}[{place}]", field.name)
+            };
+            let of = |values: &Values| f64::from(values.numbers_at(index)[place]);
+            columns = columns.number(name, all.iter().map(of));
+        }
+    }
+    columns
+}
+
+/// A distance by name.
+type NamedDistance = (&'static str, fn(&Residual) -> f64);
+
+/// Medians and worst of the distances, over looks and views.
+pub fn table(title: &str, refits: &[Refit]) -> Table {
+    let mut table = Table::new(title).texts(["distance"]).numbers([
+        "median at the start",
+        "worst",
+        "median fitted",
+        "worst",
+    ]);
+    let figures: [NamedDistance; 3] = [
+        ("L1", |row| row.l1),
+        ("L2", |row| row.l2),
+        ("L1, mean of RGB", |row| row.l1_mean),
+    ];
+    for (name, of) in figures {
+        let [before, after] = [
+            Summary::of(refits.iter().flat_map(|refit| &refit.before).map(of)),
+            Summary::of(refits.iter().flat_map(|refit| &refit.after).map(of)),
+        ];
+        let cells = [before.median, before.most, after.median, after.most].map(number::percent);
+        table.push([name.to_owned()].into_iter().chain(cells));
+    }
+    table.note("Of S cos θᵢ over the sphere, relative to the norm of the model that is fitted to, by look and view.")
+}
