@@ -2,7 +2,8 @@
 //!
 //! # What is measured
 //!
-//! For each cell of the [`Grid`] and each factor on the Cauchy model's widths ([`Width`]): the albedo of either model, and
+//! For each cell of the [`Grid`] and each choice of the Cauchy model's widths ([`Width`]), one of which [fits](crate::fit) all
+//! parameters: the albedo of either model, and
 //! the distance of their `S cos theta_i` (the mean of RGB, per steradian of `wi`) over the sphere, in L1 and in L2, each
 //! relative to the Gaussian model's own norm
 //! - as they are,
@@ -25,6 +26,7 @@ mod blur;
 mod lobes;
 mod measure;
 mod output;
+mod refit;
 
 pub(crate) use best::least;
 pub use blur::SIGMA_DEG;
@@ -62,16 +64,19 @@ pub enum Width {
     BestOfGrid,
     /// The factor with the least L2 difference as it is, for each cell.
     BestOfCell,
+    /// No factor: all parameters of each hair are [fitted](crate::fit) in L1, from all inclinations of the grid together.
+    Refitted,
 }
 
 impl Width {
     /// All of them, in the order of reports.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Paper,
         Self::HalfWidth,
         Self::Area,
         Self::BestOfGrid,
         Self::BestOfCell,
+        Self::Refitted,
     ];
 
     /// Name in reports and in rows.
@@ -83,6 +88,7 @@ impl Width {
             Self::Area => "area",
             Self::BestOfGrid => "best-of-grid",
             Self::BestOfCell => "best-of-cell",
+            Self::Refitted => "refitted",
         }
     }
 }
@@ -105,16 +111,22 @@ pub struct Difference {
     pub grid: Grid,
     /// Cells outermost, in the order of the grid, then [`Width::ALL`].
     pub rows: Vec<DifferenceRow>,
+    /// Parameters of the Cauchy model of [`Width::Refitted`], by hair: the inclinations of a hair are one after the other.
+    refits: Vec<HairParams>,
 }
 
 impl Difference {
-    /// Computes them, on all cores: in less than a minute for the whole grid. Figures are taken
-    /// from `journal`, or put there.
+    /// Computes them, on all cores. Figures are taken from `journal`, or put there. Most of the time goes into the fits, whose
+    /// numbers `progress` gets: done, and all.
     ///
     /// # Errors
     ///
     /// Those of `journal`. The hair of [`Grid::FULL`] and [`Grid::QUICK`] is accepted.
-    pub fn over(grid: Grid, journal: &Journal) -> Result<Self, Error> {
+    pub fn over(
+        grid: Grid,
+        journal: &Journal,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Self, Error> {
         const BEST: &str = "best factor";
         let key = |cell: &Cell| format!("difference in cell {}", cell.index);
         let cells: Vec<Cell> = grid.cells().collect();
@@ -144,11 +156,13 @@ impl Difference {
             };
             Ok::<_, Error>([least(squares)?])
         })?;
+        let refits = refit::all(grid, journal, progress)?;
         let blur = Blur::new(SIGMA_DEG.to_radians(), LATITUDES, LATITUDES);
         let rows = (cells.par_iter().zip(&hair)).map(|(cell, hair)| {
             let find = || {
                 let hair = hair.as_ref().ok_or_else(|| Error::Missing(key(cell)))?;
-                let found = figures(hair, best_of_grid, &blur);
+                let refit = &refits[refit::hair_of(&grid, cell)];
+                let found = figures(hair, best_of_grid, refit, &blur);
                 let numbers: Vec<f64> = found.iter().flat_map(Differences::numbers).collect();
                 Ok::<_, Error>(core::array::from_fn(|place| numbers[place]))
             };
@@ -165,7 +179,13 @@ impl Difference {
         Ok(Self {
             grid,
             rows: rows.into_iter().flatten().collect(),
+            refits,
         })
+    }
+
+    /// Parameters of the Cauchy model of [`Width::Refitted`] for the hair of a cell.
+    pub(crate) fn refit(&self, cell: &Cell) -> &HairParams {
+        &self.refits[refit::hair_of(&self.grid, cell)]
     }
 
     /// The rows of one choice of widths.
@@ -184,18 +204,26 @@ pub(crate) fn blurred(params: &HairParams, theta_o: f64, k: f64) -> Vec<Harmonic
 }
 
 /// The figures of a hair by the choices of its widths.
-fn figures(hair: &HairValues, best_of_grid: f64, blur: &Blur) -> Vec<Differences> {
-    let factors = Width::ALL.map(|width| match width {
-        Width::Paper => f64::from(Cauchy::PAPER.width_factor()),
-        Width::HalfWidth => f64::from(Cauchy::HALF_WIDTH.width_factor()),
-        Width::Area => f64::from(Cauchy::AREA.width_factor()),
-        Width::BestOfGrid => best_of_grid,
-        Width::BestOfCell => {
-            let Ok(best) = least(|k| Ok::<_, Infallible>(hair.square_error(k)));
-            best
-        }
+fn figures(
+    hair: &HairValues,
+    best_of_grid: f64,
+    refit: &HairParams,
+    blur: &Blur,
+) -> Vec<Differences> {
+    let kinds = Width::ALL.map(|width| {
+        Kind::cauchy(match width {
+            Width::Paper => f64::from(Cauchy::PAPER.width_factor()),
+            Width::HalfWidth => f64::from(Cauchy::HALF_WIDTH.width_factor()),
+            Width::Area => f64::from(Cauchy::AREA.width_factor()),
+            Width::BestOfGrid => best_of_grid,
+            Width::BestOfCell => {
+                let Ok(best) = least(|k| Ok::<_, Infallible>(hair.square_error(k)));
+                best
+            }
+            Width::Refitted => return Kind::refitted(refit),
+        })
     });
-    hair.figures(&factors.map(Kind::cauchy), blur)
+    hair.figures(&kinds, blur)
 }
 
 fn hair(cell: &Cell) -> Result<HairValues, ParamError> {
@@ -216,7 +244,8 @@ mod tests {
 
     #[test]
     fn the_best_factors_are_the_best_in_their_norm() {
-        let found = Difference::over(Grid::QUICK, &Journal::default()).expect("accepted");
+        let found =
+            Difference::over(Grid::QUICK, &Journal::default(), &|_, _| ()).expect("accepted");
         assert_eq!(found.rows.len(), Grid::QUICK.len() * Width::ALL.len());
         let squares = |width| {
             found
@@ -231,7 +260,7 @@ mod tests {
             );
         }
         for rows in found.rows.chunks(Width::ALL.len()) {
-            let [others @ .., best] = rows else {
+            let [others @ .., best, _] = rows else {
                 panic!("no rows")
             };
             for other in others {
@@ -239,6 +268,30 @@ mod tests {
                     best.figures.plain.l2 <= other.figures.plain.l2 + 1e-9,
                     "{best:?} {other:?}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn no_refit_is_further_away_than_a_factor() {
+        let found =
+            Difference::over(Grid::QUICK, &Journal::default(), &|_, _| ()).expect("accepted");
+        let views = Grid::QUICK.theta_o_deg.len() * Width::ALL.len();
+        for rows in found.rows.chunks(views) {
+            // The light that is elsewhere, from all inclinations.
+            let distance = |width: Width| -> f64 {
+                let rows = rows.iter().filter(|row| row.width == width);
+                let light = rows.map(|row| row.figures.plain.l1 * row.figures.albedo_gaussian);
+                light.sum()
+            };
+            let refitted = distance(Width::Refitted);
+            for width in [
+                Width::Paper,
+                Width::HalfWidth,
+                Width::Area,
+                Width::BestOfGrid,
+            ] {
+                assert!(refitted < distance(width), "{width:?} {:?}", rows[0].cell);
             }
         }
     }

@@ -23,6 +23,7 @@ mod residual;
 mod rules;
 mod variables;
 
+pub(crate) use over::value_columns;
 pub use over::{Refit, columns, hair_of, refits, table};
 pub use points::Points;
 pub use residual::{Residual, residuals};

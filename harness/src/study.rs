@@ -42,6 +42,7 @@ pub mod grid;
 pub mod output;
 pub mod part;
 mod rays;
+mod refit;
 mod report;
 mod rows;
 mod summary;

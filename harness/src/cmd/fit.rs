@@ -3,17 +3,16 @@
 use super::print_tables;
 use crate::args::{Fit, FitNorm, FitOver};
 use crate::fit::page::Shown;
-use crate::fit::{self, FitConfig, Look, Norm, residuals};
+use crate::fit::{self, FitConfig, Look, Norm, Points, residuals};
 use crate::materials::{self, NamedMaterial};
 use crate::study::Grid;
 use crate::subject::values_json;
 use core::f64::consts::FRAC_PI_2;
-use core::sync::atomic::{AtomicUsize, Ordering};
 use hairis_instruments::error::Error;
 use hairis_instruments::files::{whole, writable, write_json};
 use hairis_instruments::machine;
 use hairis_instruments::program::say;
-use hairis_instruments::progress::{share_bar, show_share};
+use hairis_instruments::progress::{Progress, share_bar, show_share};
 use hairis_variants::{ModelId, Values};
 use serde_json::json;
 use std::fs;
@@ -43,6 +42,12 @@ pub fn run(flags: &Fit) -> Result<(), Error> {
         model: from.model,
         values: from.values,
     };
+    if Points::new(&look, to, &config, 0)?.is_black() {
+        return Err(Error::Usage(format!(
+            "{} must reflect light towards the views, got S of 0 in all directions; change its intensities or --theta-o-deg",
+            from.name
+        )));
+    }
     let found = fit::fit(&look, to, &config)?;
     let start = Look {
         model: found.found.model,
@@ -146,11 +151,8 @@ fn run_over(flags: &Fit, over: FitOver) -> Result<(), Error> {
     let path = flags.out.join("fits.csv");
     writable(&path)?;
     let bar = share_bar("fits {wide_bar} {percent:>3}% {elapsed} (left {eta})");
-    let done = AtomicUsize::new(0);
-    let refits = fit::refits(&looks, to, &config, &|one| {
-        let done = one + done.fetch_add(one, Ordering::Relaxed);
-        show_share(&bar, done as f64 / looks.len() as f64);
-    })?;
+    let show = |done: usize, of: usize| show_share(&bar, done as f64 / of as f64);
+    let refits = fit::refits(&looks, to, &config, &Progress::new(looks.len(), &show))?;
     bar.finish_and_clear();
     whole(&path, |out| fit::columns(&refits).write_csv(out))?;
     let title = format!(

@@ -12,7 +12,7 @@ use hairis_instruments::error::Error;
 use hairis_instruments::interrupt::Interrupt;
 use hairis_instruments::light::Environment;
 use hairis_instruments::program::say;
-use hairis_instruments::progress::bar;
+use hairis_instruments::progress::{bar, share_bar, show_share};
 use hairis_instruments::shard::Shard;
 use std::fs;
 use std::io::ErrorKind;
@@ -96,7 +96,15 @@ pub(super) fn finish(
     interrupt: Interrupt,
 ) -> Result<(), Error> {
     let journal = Journal::open(out, "difference", study.header(), interrupt)?;
-    let difference = Difference::over(study.grid(), &journal)?;
+    let bar = share_bar("refits {wide_bar} {percent:>3}% {elapsed} (left {eta})");
+    // V on the refits takes about as long as the fits.
+    let show = |first: f64| {
+        let bar = &bar;
+        move |done: usize, of: usize| show_share(bar, first + 0.5 * done as f64 / of as f64)
+    };
+    let difference = Difference::over(study.grid(), &journal, &show(0.0))?;
+    study.refit(&difference, environment, &journal, &show(0.5))?;
+    bar.finish_and_clear();
     study.time(environment);
     journal.check()?;
     study.write(out, &difference)?;
@@ -119,6 +127,7 @@ pub(super) fn finish(
         "wrote {rows}.csv{parquet}, {} as .csv{parquet}, and {rows}.json",
         others.join(" and ")
     ));
+    say(&format!("wrote {}", out.join("refitted.csv").display()));
     if study.has_materials() {
         say(&format!("wrote {}", out.join("materials.csv").display()));
     }

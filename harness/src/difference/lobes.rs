@@ -22,6 +22,8 @@ pub(super) const TERMS: usize = 3;
 pub(super) struct Kind {
     pub(super) shape: Shape,
     pub(super) factor: f64,
+    /// Parameters in place of those of the hair.
+    refit: Option<HairDesc<f64>>,
 }
 
 impl Kind {
@@ -29,6 +31,7 @@ impl Kind {
     pub(super) const GAUSSIAN: Self = Self {
         shape: Shape::Gaussian,
         factor: 1.0,
+        refit: None,
     };
 
     /// The Cauchy model with its widths times `factor`.
@@ -36,7 +39,23 @@ impl Kind {
         Self {
             shape: Shape::Cauchy,
             factor,
+            refit: None,
         }
+    }
+
+    /// The Cauchy model with parameters of its own.
+    pub(super) fn refitted(params: &HairParams) -> Self {
+        Self {
+            shape: Shape::Cauchy,
+            factor: 1.0,
+            refit: Some(params.desc().map(f64::from)),
+        }
+    }
+
+    /// The parameters of a hair in this model.
+    fn parameters(self, of: &ViewedHair) -> HairDesc<f64> {
+        let own = self.refit.unwrap_or(of.parameters);
+        own.with_width_factor(self.factor)
     }
 }
 
@@ -82,7 +101,7 @@ impl ViewedHair {
 
     /// The factors that depend on `theta_i`.
     pub(super) fn along(&self, kind: Kind, theta_i: f64) -> [f64; TERMS] {
-        let p = self.parameters.with_width_factor(kind.factor);
+        let p = kind.parameters(self);
         let (theta_h, theta_d) = (
             0.5 * (theta_i + self.theta_o),
             0.5 * (self.theta_o - theta_i),
@@ -97,7 +116,7 @@ impl ViewedHair {
 
     /// The factors that depend on `phi`, which is in [-pi, pi].
     pub(super) fn around(&self, kind: Kind, phi: f64) -> [f64; TERMS] {
-        let p = self.parameters.with_width_factor(kind.factor);
+        let p = kind.parameters(self);
         let bell = |width, x| kind.shape.bell(width, x);
         [
             (0.5 * phi).cos().max(0.0),

@@ -7,7 +7,7 @@ use super::lobes::{BellValues, Kind, Rule, ViewedHair, dot};
 /// the sphere, relative to the same norm of the Gaussian model alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Differences {
-    /// Factor on the widths.
+    /// Factor on the widths; 1 for parameters of its own.
     pub k: f64,
     /// Albedo of the Gaussian model: the integral of `S cos theta_i`.
     pub albedo_gaussian: f64,
@@ -267,10 +267,23 @@ mod tests {
         let mut worst = [0.0_f64; 10];
         // Narrow and wide hair, glints and none, from the side and along the fibre.
         for index in (0..Grid::FULL.len()).step_by(89) {
+            // Parameters of its own, as far from those of the hair as fits are.
+            let moved = Grid::FULL.cell(index).params().expect("accepted");
+            let desc = moved.desc();
+            let moved = HairParams::new(&HairDesc {
+                alpha: desc.alpha.map(|alpha| alpha + 0.2 * desc.beta[1]),
+                beta: desc.beta.map(|beta| 0.7 * beta),
+                gamma_tt: 0.7 * desc.gamma_tt,
+                phi_g: desc.phi_g + 0.3 * desc.gamma_g,
+                gamma_g: 0.7 * desc.gamma_g,
+                i_g: 1.3 * desc.i_g,
+                ..*desc
+            });
             let kinds = [
                 Kind::cauchy(1.0),
                 Kind::cauchy(0.797_884_6),
                 Kind::cauchy(1.3),
+                Kind::refitted(&moved.expect("accepted")),
             ];
             let coarse = hair(index, ORDER).figures(&kinds, &blur(LATITUDES));
             let fine = hair(index, 2 * ORDER).figures(&kinds, &blur(2 * LATITUDES));

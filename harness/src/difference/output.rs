@@ -56,7 +56,7 @@ impl Difference {
     /// | column | content |
     /// |---|---|
     /// | `cell` .. `theta_o_deg` | the cell, as in the study's rows; widths, `phi_g` and `theta_o` in degrees |
-    /// | `width`, `k` | choice of the Cauchy model's widths ([`Width::name`]), and their factor |
+    /// | `width`, `k` | choice of the Cauchy model's widths ([`Width::name`]), and their factor; 1 for `refitted` |
     /// | `albedo_gaussian`, `albedo_cauchy` | integral of `S cos theta_i` over the sphere, mean of RGB |
     /// | `albedo_ratio` | that of the Cauchy model over that of the Gaussian one |
     /// | `l1`, `l2` | norm of the difference of `S cos theta_i` over the Gaussian model's own norm |
@@ -106,8 +106,11 @@ impl Difference {
         values.iter().map(summary).collect()
     }
 
-    /// The factor of a choice of widths; for that of each cell its range, in words.
+    /// The factor of a choice of widths; for that of each cell its range, in words; nothing without a factor.
     pub(crate) fn factor(&self, width: Width) -> String {
+        if width == Width::Refitted {
+            return String::new();
+        }
         let k = self.summary(width, |f| f.k);
         let shown = |k| number::plain(k, 4);
         if k.most > k.least {
@@ -137,7 +140,8 @@ impl Difference {
         }
         table.note(format!(
             "Norms of the difference of S cos θᵢ over the sphere, mean of RGB, relative to the Gaussian model's own. Shape: \
-             with the Cauchy model scaled to the same albedo. Blurred: by a von Mises-Fisher density of {}°.",
+             with the Cauchy model scaled to the same albedo. Blurred: by a von Mises-Fisher density of {}°. Refitted: all \
+             parameters of the Cauchy model fitted to the Gaussian one, in L1.",
             super::SIGMA_DEG
         ))
     }
@@ -218,7 +222,7 @@ mod tests {
             theta_o_deg: &[45.0],
             ..Grid::QUICK
         };
-        let found = Difference::over(grid, &Journal::default()).expect("accepted");
+        let found = Difference::over(grid, &Journal::default(), &|_, _| ()).expect("accepted");
         let mut csv = Vec::new();
         found.columns().write_csv(&mut csv).expect("written");
         let fields: Vec<usize> = csv

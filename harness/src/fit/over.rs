@@ -5,9 +5,9 @@ use crate::difference::Summary;
 use crate::study::Grid;
 use hairis::ParamError;
 use hairis_instruments::columns::Columns;
+use hairis_instruments::progress::Progress;
 use hairis_instruments::table::{Table, number};
 use hairis_variants::{ModelId, Parameters, Values};
-use rayon::prelude::*;
 
 /// A look that was fitted, from the inclinations of the fit.
 #[derive(Clone, Debug)]
@@ -62,7 +62,7 @@ pub fn refits(
     looks: &[(String, Look)],
     to: ModelId,
     config: &FitConfig,
-    progress: &(dyn Fn(usize) + Sync),
+    progress: &Progress<'_>,
 ) -> Result<Vec<Refit>, ParamError> {
     let refit = |(name, look): &(String, Look)| {
         let found = fit(look, to, config)?;
@@ -70,7 +70,7 @@ pub fn refits(
             model: found.found.model,
             values: first_start(look, to),
         };
-        let refit = Refit {
+        Ok(Refit {
             name: name.clone(),
             values: found.found.values,
             distances_of_rules: found.distances_of_rules,
@@ -78,11 +78,9 @@ pub fn refits(
             error: found.error,
             before: residuals(look, &start, &found.points)?,
             after: residuals(look, &found.found, &found.points)?,
-        };
-        progress(1);
-        Ok(refit)
+        })
     };
-    looks.par_iter().map(refit).collect()
+    progress.map(looks, refit).into_iter().collect()
 }
 
 /// Rows of the refits: a look and a view each.

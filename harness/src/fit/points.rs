@@ -86,6 +86,13 @@ impl Points {
         Ok(points)
     }
 
+    /// Whether the look reflects no light.
+    #[must_use]
+    pub fn is_black(&self) -> bool {
+        let mut values = self.look.iter().flatten().flatten();
+        values.all(|value| *value == 0.0)
+    }
+
     /// The material at a view, by offset.
     pub(super) fn bsdfs(&self, material: &AnyMaterial, view: usize) -> Vec<AnyBsdf> {
         let offsets = self.offsets.iter();

@@ -1,6 +1,7 @@
 //! Fits whose answer is known, and fits that may not be worse than their start.
 
 use super::*;
+use hairis_instruments::progress::Progress;
 use hairis_variants::Kind;
 
 fn look(model: ModelId, preset: &str) -> Look {
@@ -119,7 +120,7 @@ fn the_distance_is_that_of_another_quadrature() {
         theta_o_deg: &[45.0],
         ..Grid::QUICK
     };
-    let exact = Difference::over(grid, &Journal::default()).expect("accepted");
+    let exact = Difference::over(grid, &Journal::default(), &|_, _| ()).expect("accepted");
     for (cell, row) in grid.cells().zip(exact.of(crate::difference::Width::Paper)) {
         let values = hairis_variants::Parameters::values(&cell.params().expect("accepted"));
         let look = Look {
@@ -152,13 +153,23 @@ fn the_distance_is_that_of_another_quadrature() {
             (found.albedo_from / row.figures.albedo_gaussian - 1.0).abs() < 0.01,
             "albedo"
         );
+        let blurred = FitConfig {
+            norm: Norm::Blurred,
+            ..config
+        };
+        let points = Points::new(&look, ModelId::Cauchy, &blurred, 1).expect("legal values");
+        let distance = points.distance(ModelId::Cauchy, &values, Norm::Blurred);
+        let (distance, want) = (distance.expect("legal values"), row.figures.blurred.l1);
+        println!("blurred {distance} {want}");
+        // Of channels, where the other is of their mean.
+        assert!((distance / want - 1.0).abs() < 0.05, "{distance} {want}");
         let sum: f64 = found.lobes.iter().sum();
         assert!((sum / found.l1 - 1.0).abs() < 1e-6, "lobes have all of it");
     }
 }
 
-/// Refits between models, of their presets and, between models of the same fields, of the hair of the study's short grid, from its
-/// inclinations. With `HAIRIS_RECORD=write` in the environment, writes the record.
+/// Refits between models of their presets; between models of the same fields, of the hair of the study's short grid as well, all from
+/// its inclinations. With `HAIRIS_RECORD=write` in the environment, writes the record.
 #[test]
 fn refits_are_those_recorded() {
     use crate::study::Grid;
@@ -170,7 +181,6 @@ fn refits_are_those_recorded() {
         (ModelId::Gaussian, ModelId::Chiang),
         (ModelId::Chiang, ModelId::Gaussian),
     ];
-    let config = FitConfig::of_grid(&Grid::QUICK);
     let mut text = "# CPU: any\n# L1 distance of S cos theta_i per channel, of all views, at the rules without a fit and fitted\n\
                     from,to,look,equal,half_width,area,best_factor,fitted,error\n"
         .to_owned();
@@ -178,10 +188,18 @@ fn refits_are_those_recorded() {
         let mut looks: Vec<(String, Look)> = (model.presets())
             .map(|(name, values)| (name.to_owned(), Look { model, values }))
             .collect();
-        if model.fields() == to.fields() {
+        let config = if model.fields() == to.fields() {
             looks.extend(hair_of(Grid::QUICK, model).expect("accepted"));
-        }
-        let found = refits(&looks, to, &config, &|_| {}).expect("legal values");
+            FitConfig::of_grid(&Grid::QUICK)
+        } else {
+            FitConfig {
+                starts: 2,
+                directions: 512,
+                ..FitConfig::default()
+            }
+        };
+        let progress = Progress::new(looks.len(), &|_, _| ());
+        let found = refits(&looks, to, &config, &progress).expect("legal values");
         println!(
             "{}",
             table(&format!("{model:?} to {to:?}"), &found).to_text(None)

@@ -5,7 +5,7 @@ use crate::efficiency::PHI_O_DEG;
 use crate::sampler::{Sampler, Scatter};
 use crate::subject::ModelKind;
 use crate::variance::{self, Measured, SOURCE, SampleBudget, Subject};
-use hairis::ParamError;
+use hairis::{HairParams, ParamError};
 use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::light::Light;
 use hairis_instruments::sequence::stream_id;
@@ -22,24 +22,55 @@ pub(super) fn measure(
     samplers: &[Sampler],
 ) -> Result<Vec<Measured>, ParamError> {
     let params = cell.params()?;
+    let subjects = ModelKind::ALL.into_iter().flat_map(|model| {
+        let subject = move |sampler: &Sampler| (model.index(), model, *sampler);
+        samplers.iter().map(subject)
+    });
+    Ok(of_subjects(seed, budget, lights, cell, &params, subjects))
+}
+
+/// The figures of the Cauchy model with parameters of its own in place of the cell's: samplers outermost, then lights.
+pub(super) fn measure_refit(
+    seed: u64,
+    budget: SampleBudget,
+    lights: &[&dyn Light],
+    cell: &Cell,
+    params: &HairParams,
+    samplers: &[Sampler],
+) -> Vec<Measured> {
+    // Streams after those of all models.
+    let model = ModelKind::ALL.len() as u64;
+    let subject = |sampler: &Sampler| (model, ModelKind::Cauchy, *sampler);
+    let subjects = samplers.iter().map(subject);
+    of_subjects(seed, budget, lights, cell, params, subjects)
+}
+
+/// The figures of subjects, each with a number among the streams of models; after them those of perfect sampling.
+fn of_subjects(
+    seed: u64,
+    budget: SampleBudget,
+    lights: &[&dyn Light],
+    cell: &Cell,
+    params: &HairParams,
+    subjects: impl Iterator<Item = (u64, ModelKind, Sampler)>,
+) -> Vec<Measured> {
     let wo = fibre_direction(
         f64::from(cell.theta_o_deg).to_radians(),
         PHI_O_DEG.to_radians(),
     )
     .as_vec3();
     let key = stream_id(&cell.values().map(|value| u64::from(value.to_bits())));
-    let subject = |model: ModelKind, sampler: Sampler| Subject {
-        scatter: Scatter::new(model, sampler, &params, wo),
-        stream: [model.index(), sampler.index()],
-        is_source: sampler == SOURCE,
-    };
-    let of_model = |model| samplers.iter().map(move |sampler| (model, *sampler));
-    let subjects = ModelKind::ALL.into_iter().flat_map(of_model);
-    let subjects: Vec<Subject> = subjects.map(|(model, of)| subject(model, of)).collect();
+    let subjects: Vec<Subject> = subjects
+        .map(|(number, model, sampler)| Subject {
+            scatter: Scatter::new(model, sampler, params, wo),
+            stream: [number, sampler.index()],
+            is_source: sampler == SOURCE,
+        })
+        .collect();
     let found = variance::measure([seed, key], budget, lights, &subjects);
     let rows = found.iter().flat_map(|of| &of.sampler);
     let perfect = found.iter().flat_map(|of| &of.perfect);
-    Ok(rows.chain(perfect).copied().collect())
+    rows.chain(perfect).copied().collect()
 }
 
 #[cfg(test)]

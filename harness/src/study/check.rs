@@ -33,7 +33,7 @@ impl Study {
 #[cfg(test)]
 mod tests {
     use crate::study::Plan;
-    use crate::study::output::{Study, Times};
+    use crate::study::output::Study;
     use crate::variance::Measured;
     use hairis_instruments::light::Sky;
     use hairis_instruments::shard::Shard;
@@ -47,14 +47,12 @@ mod tests {
             lights: (&sky).into(),
             materials: &[],
         };
-        let Study { header, cells, .. } = Study::of_figures(plan.header(Shard::WHOLE), &|_, _| 0.2);
-        let mut cells = cells[..2].to_vec();
+        let study = Study::of_figures(plan.header(Shard::WHOLE), &|_, _| 0.2);
+        let mut cells = study.cells[..2].to_vec();
         let found = |cells: &[Vec<Measured>]| {
             Study {
-                header: header.clone(),
                 cells: cells.to_vec(),
-                materials: Vec::new(),
-                times: Times::default(),
+                ..study.clone()
             }
             .failures()
         };

@@ -2,6 +2,7 @@
 
 use super::estimator::set_bounds;
 use super::part::{self, FORMAT, Finished, Header, Read, refuse};
+use super::refit::Refits;
 use super::times::Times;
 use super::{Grid, Place};
 use crate::materials::NamedMaterial;
@@ -28,6 +29,8 @@ pub struct Study {
     pub(super) materials: Vec<Vec<Measured>>,
     /// Times on this machine; unknown until [`time`](Self::time).
     pub(super) times: Times,
+    /// V on the refitted Cauchy model; unknown until [`refit`](Self::refit).
+    pub(super) refits: Refits,
 }
 
 impl Study {
@@ -127,6 +130,7 @@ impl Study {
             materials,
             header,
             times: Times::default(),
+            refits: Refits::default(),
         })
     }
 
@@ -161,6 +165,7 @@ impl Study {
             materials: Vec::new(),
             header,
             times: Times::default(),
+            refits: Refits::default(),
         }
     }
 

@@ -110,8 +110,8 @@ impl Study {
         rays::efficiencies(columns, &rows, self)
     }
 
-    /// Writes `study.csv` (the rows), `efficiency.csv`, `difference.csv` (how far apart the models are), `times.csv` and
-    /// `study.json` (the settings) into `dir`, `materials.csv` (the rows of the materials) if there are any, with feature `parquet` the first three as `.parquet` too, each as a whole or not
+    /// Writes `study.csv` (the rows), `efficiency.csv`, `difference.csv` (how far apart the models are), `refitted.csv` (the fitted
+    /// Cauchy model), `times.csv` and `study.json` (the settings) into `dir`, `materials.csv` (the rows of the materials) if there are any, with feature `parquet` the first three as `.parquet` too, each as a whole or not
     /// at all.
     ///
     /// # Errors
@@ -135,6 +135,8 @@ impl Study {
                 columns.write_parquet(self.notes(), out)
             })?;
         }
+        let refits = self.refit_columns(difference);
+        whole(&dir.join("refitted.csv"), |out| refits.write_csv(out))?;
         if !self.materials.is_empty() {
             let columns = self.material_columns();
             whole(&dir.join("materials.csv"), |out| columns.write_csv(out))?;

@@ -69,7 +69,8 @@ impl Study {
              magnitude over the Gaussian model's albedo: 30% says that light worth 30% of what the Gaussian model reflects \
              is reflected elsewhere, is missing, or is new. L2 is the root of the integral of the square, over that of the \
              Gaussian model. k is the factor on the widths of the Cauchy model: 1 (paper), 1.177 (half-width), 0.798 (area), \
-             the best for the grid and the best for each cell, both in L2. The blur is by a von Mises-Fisher density of \
+             the best for the grid and the best for each cell, both in L2; refitted, all parameters of the Cauchy model are \
+             fitted to each hair, in L1 and from all inclinations together, by directions that no figure here is of. The blur is by a von Mises-Fisher density of \
              {SIGMA_DEG}°: what is left of a difference in a light that wide."
         );
         vec![
@@ -117,7 +118,7 @@ impl Study {
              timed in directions of `published`, in turns with the samplers.",
             "Differences of looks are quadrature in double precision and have no statistical error; their own is below 0.1% \
              of each figure.",
-            "The rows are in study.csv, efficiency.csv and difference.csv, the figures in figures/.",
+            "The rows are in study.csv, efficiency.csv, difference.csv and refitted.csv, the figures in figures/.",
             claims,
         ];
         let others = &others[..others.len() - usize::from(has_claims)];

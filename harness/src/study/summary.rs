@@ -63,7 +63,7 @@ impl Study {
             "The same in equal time, set-up included: median (cells won / undecided / lost)";
         let with_look_up =
             "The same with a look-up of the light: median (cells won / undecided / lost)";
-        vec![
+        let mut tables = vec![
             self.gains(
                 "V of the published sampler over V of another, over the grid",
                 &all,
@@ -81,7 +81,9 @@ impl Study {
             .note(above("on the Gaussian model")),
             self.gains_in_time(in_time, &models, Counted::Sample)
                 .note(&*timed),
-        ]
+        ];
+        tables.extend(self.refit_table());
+        tables
     }
 
     /// The table of the materials beside the hair of the grid, if there are any.

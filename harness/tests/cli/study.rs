@@ -58,9 +58,14 @@ fn reference() -> &'static Path {
 
 /// Files that depend on the seed and the build alone.
 const ROWS: &[&str] = if cfg!(feature = "parquet") {
-    &["study.csv", "study.parquet", "difference.csv"]
+    &[
+        "study.csv",
+        "study.parquet",
+        "difference.csv",
+        "refitted.csv",
+    ]
 } else {
-    &["study.csv", "difference.csv"]
+    &["study.csv", "difference.csv", "refitted.csv"]
 };
 
 /// That `dir` holds the rows of the reference, byte by byte.

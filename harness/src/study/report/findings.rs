@@ -3,6 +3,7 @@
 use super::super::equal_time::Sign;
 use super::super::estimator::{Estimator, Strategy, name, published, samplers};
 use super::super::finished::Study;
+use super::super::refit::saved;
 use super::super::view::{Counted, MANY, TOLD};
 use crate::difference::{Difference, Differences, Summary, Width, albedo_ratio};
 use crate::lights::{environment, in_words};
@@ -18,6 +19,7 @@ pub(super) fn findings(of: &Study, difference: &Difference) -> Vec<String> {
         worth(of),
         which(of),
         looks(difference),
+        refitted(of, difference),
         cost(of),
         where_not(difference),
     ]
@@ -178,18 +180,19 @@ pub(super) fn verdicts(of: &Study, difference: &Difference) -> Vec<[String; 2]> 
             ]);
         }
     }
-    let [plain, blurred] = l1(difference).map(|of| percent(of.median));
+    let [plain, blurred] = l1(difference, Width::Paper).map(|of| percent(of.median));
+    let [refitted, _] = l1(difference, Width::Refitted).map(|of| percent(of.median));
     verdicts.push([
         "Looks".to_owned(),
-        format!("Cauchy looks {plain} different ({blurred} blurred by 10°)."),
+        format!("Cauchy looks {plain} different ({blurred} blurred by 10°), and {refitted} once refitted."),
     ]);
     verdicts
 }
 
-/// L1 with the same widths, as it is and after the blur.
-fn l1(difference: &Difference) -> [Summary; 2] {
+/// L1 with a choice of widths, as it is and after the blur.
+fn l1(difference: &Difference, width: Width) -> [Summary; 2] {
     let figures: [fn(&Differences) -> f64; 2] = [|f| f.plain.l1, |f| f.blurred.l1];
-    figures.map(|figure| difference.summary(Width::Paper, figure))
+    figures.map(|figure| difference.summary(width, figure))
 }
 
 /// How far sampling of the hair can go under the environment: V of `published` over that of perfect sampling, and of `matched`.
@@ -220,7 +223,7 @@ pub(super) fn limit(of: &Study) -> Option<String> {
 
 /// Sentences on the change in looks.
 fn looks(difference: &Difference) -> String {
-    let [plain, blurred] = l1(difference).map(|of| [of.median, of.most].map(percent));
+    let [plain, blurred] = l1(difference, Width::Paper).map(|of| [of.median, of.most].map(percent));
     let albedo = difference.summary(Width::Paper, albedo_ratio);
     let [paper, best] = [Width::Paper, Width::BestOfGrid]
         .map(|width| percent(difference.summary(width, |f| f.plain.l2).geometric_mean));
@@ -236,6 +239,32 @@ fn looks(difference: &Difference) -> String {
         percent(albedo.least),
         percent(albedo.most),
         difference.factor(Width::BestOfGrid),
+    )
+}
+
+/// Sentences on the Cauchy model whose parameters are fitted.
+fn refitted(of: &Study, difference: &Difference) -> String {
+    let [equal, fitted] = [Width::Paper, Width::Refitted]
+        .map(|width| l1(difference, width).map(|of| [of.median, of.most].map(percent)));
+    let parts = TOLD.into_iter().enumerate().map(|(place, sampler)| {
+        let lights = by_light(of, &|light, name| {
+            let gain = of.gain_of_refit(place, light)?;
+            Some(format!("{} under {name}", saved(gain.median)))
+        });
+        format!("with `{}` {lights}", sampler.name())
+    });
+    let parts: Vec<String> = parts.collect();
+    format!(
+        "And once it is refitted? With all parameters of the Cauchy model fitted to the look of each hair, the models differ by \
+         {} (median of L1; worst {}) in place of {} (worst {}), and by {} after the blur (worst {}). It then saves of the samples \
+         on the Gaussian model, medians over the grid: {}.",
+        fitted[0][0],
+        fitted[0][1],
+        equal[0][0],
+        equal[0][1],
+        fitted[1][0],
+        fitted[1][1],
+        parts.join("; ")
     )
 }
 

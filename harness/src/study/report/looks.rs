@@ -89,5 +89,10 @@ pub(super) fn charts(of: &Difference) -> Vec<Drawing> {
 
 /// A choice of widths with its factor.
 fn named(of: &Difference, width: Width) -> String {
-    format!("{}, k = {}", width.name(), of.factor(width))
+    let factor = of.factor(width);
+    if factor.is_empty() {
+        width.name().to_owned()
+    } else {
+        format!("{}, k = {factor}", width.name())
+    }
 }

@@ -372,7 +372,7 @@ fn the_report_stands_alone_and_has_every_part() {
 #[test]
 fn differences_have_a_row_for_each_cell_and_width() {
     let rows = csv("difference.csv");
-    assert_eq!(rows.len() - 1, 5 * CELLS);
+    assert_eq!(rows.len() - 1, 6 * CELLS);
     let column = |name: &str| rows[0].iter().position(|of| of == name).unwrap();
     for row in &rows[1..] {
         let number = |name: &str| row[column(name)].parse::<f64>().unwrap();
@@ -388,5 +388,23 @@ fn differences_have_a_row_for_each_cell_and_width() {
             number("blurred_l1") >= (number("albedo_ratio") - 1.0).abs() * 0.999,
             "{row:?}"
         );
+    }
+}
+
+#[test]
+fn the_refit_has_parameters_and_v_of_every_cell() {
+    let rows = csv("refitted.csv");
+    assert_eq!(rows.len() - 1, CELLS);
+    let column = |name: &str| rows[0].iter().position(|of| of == name).unwrap();
+    let v = |name: &str| column(&format!("v_{name}"));
+    for (row, next) in rows[1..].iter().zip(&rows[2..]) {
+        let number = |column: usize| row[column].parse::<f64>().unwrap();
+        assert!(number(column("beta[0]")) > 0.01, "{row:?}");
+        let [published, matched] = ["published_constant", "matched_constant"].map(v);
+        assert!(number(matched) < number(published), "{row:?}");
+        // The same hair from the next inclination.
+        if row[1..6] == next[1..6] {
+            assert_eq!(row[column("alpha[0]")..], next[column("alpha[0]")..]);
+        }
     }
 }
