@@ -145,7 +145,7 @@ impl Study {
         let mut columns = columns_of(cells.iter());
         for (place, sampler) in TOLD.into_iter().enumerate() {
             for (light, name) in self.lights().iter().enumerate() {
-                let name = format!("v_{}_{name}", sampler.name());
+                let name = format!("v_{}_{}", sampler.name(), name.replace(' ', "_"));
                 let rows = self.refits.0.iter();
                 columns = columns.estimate(&name, rows.map(|row| row[place][light]));
             }
