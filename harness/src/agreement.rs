@@ -14,9 +14,9 @@
 mod measure;
 mod packet;
 
-use crate::subject::values_json;
 use hairis::ParamError;
 use hairis_instruments::stats::percentile;
+use hairis_materials::material::values_json;
 use hairis_reference::{Accuracy, accuracy};
 use hairis_variants::ModelId;
 use measure::{CodePath, LanePlace, LocatedError, measure};

@@ -4,7 +4,6 @@ use crate::efficiency::PHI_O_DEG;
 use crate::lights::Lights;
 use crate::rays::RaySubject;
 use crate::sampler::Sampler;
-use crate::subject::values_json;
 use crate::variance::check::{self, Checked};
 use crate::variance::{
     self, MAX_RELATIVE_ERROR, Measured, RAYS, SOURCE, SampleBudget, Subject, figures_of, ray_v,
@@ -20,6 +19,7 @@ use hairis_instruments::progress::Progress;
 use hairis_instruments::sequence::stream_id;
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::{Table, number};
+use hairis_materials::material::values_json;
 use hairis_materials::{MaterialSpec, files, numbered};
 use hairis_reference::reference;
 use hairis_variants::{ModelId, Values};

@@ -3,7 +3,7 @@
 use hairis::{HairParams, ParamError};
 use hairis_instruments::sequence::Independent;
 use hairis_reference::{HairFormulas, Shape};
-use hairis_variants::{Draw, Field, Kind, ModelId, Parameters as _, Values};
+use hairis_variants::{Draw, Kind, ModelId, Parameters as _, Values};
 use serde::Serialize;
 
 /// The models compared.
@@ -94,22 +94,6 @@ pub fn random(mut values: Values, xi: &mut Independent) -> Values {
         }
     }
     values
-}
-
-/// The values as `hairis eval` reads them.
-pub(crate) fn values_json(values: &Values) -> serde_json::Value {
-    let json = |field: &Field| match field.kind {
-        Kind::Number => serde_json::json!(values.numbers(field.name)[0]),
-        Kind::Word(_) => serde_json::json!(values.word(field.name)),
-        _ => serde_json::json!(values.numbers(field.name)),
-    };
-    let given = values
-        .fields()
-        .iter()
-        .filter(|field| values.has(field.name));
-    given
-        .map(|field| (field.name.to_owned(), json(field)))
-        .collect()
 }
 
 /// Hair drawn over the range of the everyday: widths log-uniform in 1 to 30 degrees, shifts uniform within 15 degrees,

@@ -184,6 +184,23 @@ impl MaterialSpec {
     }
 }
 
+/// The values as `hairis eval` reads them.
+#[must_use]
+pub fn values_json(values: &Values) -> serde_json::Value {
+    let json = |field: &Field| match field.kind {
+        Kind::Number => serde_json::json!(values.numbers(field.name)[0]),
+        Kind::Word(_) => serde_json::json!(values.word(field.name)),
+        _ => serde_json::json!(values.numbers(field.name)),
+    };
+    let given = values
+        .fields()
+        .iter()
+        .filter(|field| values.has(field.name));
+    given
+        .map(|field| (field.name.to_owned(), json(field)))
+        .collect()
+}
+
 /// The value of an assignment.
 fn value_of(text: &str) -> Json {
     let text = text.trim();

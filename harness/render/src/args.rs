@@ -25,7 +25,6 @@ pub struct Args {
 
 /// The subcommands, each with its flags.
 #[derive(Clone, Debug, Subcommand)]
-#[expect(clippy::large_enum_variant, reason = "there is one per process")]
 pub enum Command {
     /// Render a scene: an EXR file and a PNG preview; a run that was stopped goes on
     Render(Render),
@@ -33,30 +32,19 @@ pub enum Command {
     Merge(Merge),
     /// Compare samplers on all scenes, at equal samples and at equal time: one page; a run that was stopped goes on
     Figures(Figures),
+    /// Recover the material of hair from a picture: colours, widths and shifts
+    Fit(Fit),
 }
 
 /// Flags of `hairis-render render`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Render {
     /// The scene
-    #[arg(value_enum)]
-    pub scene: Name,
-    /// Preset of the hair [default: that of the scene]
-    #[arg(long, value_name = "PRESET")]
-    pub hair: Option<String>,
-    /// Scattering model [default: gaussian]
-    #[arg(long, value_name = "NAME")]
-    pub model: Option<String>,
-    /// Hair of a file in place of a preset, in the JSON of `hairis eval`; a picture for each
-    /// material
-    #[arg(long, value_name = "FILE.json", conflicts_with_all = ["hair", "model"])]
-    pub material: Vec<PathBuf>,
-    /// Another value for a parameter of the hair
-    #[arg(long, value_name = "NAME=VALUE")]
-    pub set: Vec<String>,
-    /// How directions are drawn: uniform, published, or a word of the model's
-    #[arg(long, value_name = "WORD")]
-    pub sampler: Option<String>,
+    #[command(flatten)]
+    pub place: Place,
+    /// The hair's material
+    #[command(flatten)]
+    pub looks: Looks,
     /// How light is estimated [default: that of the scene]
     #[arg(long, value_enum)]
     pub integrator: Option<Integrator>,
@@ -69,9 +57,6 @@ pub struct Render {
     /// Source of uniform numbers
     #[arg(long, value_enum, default_value_t = Sequence::Sobol)]
     pub xi: Sequence,
-    /// How directions towards rectangular lights are drawn
-    #[arg(long, value_enum, default_value_t)]
-    pub rectangles: RectangleSampling,
     /// Which samples count where both find a light
     #[arg(long, value_enum, default_value_t = Mis::Both)]
     pub mis: Mis,
@@ -98,6 +83,73 @@ pub struct Render {
     /// The part of the picture to render
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
     pub crop: Option<CropArg>,
+    /// Write the hair, too: as .hair, .data, .bin or .ply, or else as Mitsuba's text
+    #[arg(long, value_name = "FILE")]
+    pub export: Option<PathBuf>,
+    /// Seed of the samples
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Factor on radiance in the preview [default: by the picture's brightness]
+    #[arg(long, value_name = "X")]
+    pub exposure: Option<f64>,
+    /// Measure where the time goes: rays, light, kernels, frames, numbers, the rest
+    #[arg(long)]
+    pub profile: bool,
+    /// Render shard I of N only, I from 1 to N, into a .part file for `hairis-render merge` to join
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
+    /// The EXR file; the preview lies beside it [default: out/render/SCENE.exr]
+    #[arg(long, value_name = "FILE.exr")]
+    pub out: Option<PathBuf>,
+}
+
+/// Flags of `hairis-render fit`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Fit {
+    /// The scene
+    #[command(flatten)]
+    pub place: Place,
+    /// The hair's material
+    #[command(flatten)]
+    pub looks: Looks,
+    /// The picture: channels R, G and B of an EXR file, whose size and part of a larger picture are used
+    #[arg(long, value_name = "FILE.exr")]
+    pub target: PathBuf,
+    /// Field of the start that stays as it is
+    #[arg(long, value_name = "FIELD")]
+    pub fix: Vec<String>,
+    /// Field whose numbers are variables of their own
+    #[arg(long, value_name = "FIELD")]
+    pub free: Vec<String>,
+    /// Most scatterings of a path, 1 or 2
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    pub depth: u32,
+    /// End paths that come from hair where they meet hair
+    #[arg(long)]
+    pub no_multiple: bool,
+    /// Count of iterations
+    #[arg(long, value_name = "N", default_value_t = 12)]
+    pub iterations: u32,
+    /// Samples of a pixel per iteration, an even number
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    pub spp: u32,
+    /// Seed of the samples
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Factor on radiance in the pictures [default: by the brightness of the target]
+    #[arg(long, value_name = "X")]
+    pub exposure: Option<f64>,
+    /// Folder for material.json, parameters.csv, parameters.svg and pictures.png; made if missing
+    #[arg(long, value_name = "DIR", default_value = "out/fit")]
+    pub out: PathBuf,
+}
+
+/// Flags of a scene without the looks of its hair.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Place {
+    /// The scene
+    #[arg(value_enum)]
+    pub scene: Name,
     /// Strands of the procedural hair
     #[arg(long, value_name = "N", default_value_t = 30_000)]
     pub strands: usize,
@@ -131,9 +183,6 @@ pub struct Render {
     /// Largest distance of added strands from theirs in centimetres
     #[arg(long, value_name = "CM", requires = "import", default_value_t = 0.5)]
     pub spread: f32,
-    /// Write the hair, too: as .hair, .data, .bin or .ply, or else as Mitsuba's text
-    #[arg(long, value_name = "FILE")]
-    pub export: Option<PathBuf>,
     /// Environment map in place of the scene's light, latitude-longitude, .hdr or .exr
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
@@ -146,21 +195,30 @@ pub struct Render {
     /// Degrees by which the camera goes around the hair, to the right
     #[arg(long, value_name = "DEG", default_value_t = 0.0)]
     pub turn: f32,
-    /// Seed of the samples
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub seed: u64,
-    /// Factor on radiance in the preview [default: by the picture's brightness]
-    #[arg(long, value_name = "X")]
-    pub exposure: Option<f64>,
-    /// Measure where the time goes: rays, light, kernels, frames, numbers, the rest
-    #[arg(long)]
-    pub profile: bool,
-    /// Render shard I of N only, I from 1 to N, into a .part file for `hairis-render merge` to join
-    #[arg(long, value_name = "I/N")]
-    pub shard: Option<Shard>,
-    /// The EXR file; the preview lies beside it [default: out/render/SCENE.exr]
-    #[arg(long, value_name = "FILE.exr")]
-    pub out: Option<PathBuf>,
+    /// How directions towards rectangular lights are drawn
+    #[arg(long, value_enum, default_value_t)]
+    pub rectangles: RectangleSampling,
+}
+
+/// Flags of the hair's material.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Looks {
+    /// Preset of the hair [default: that of the scene]
+    #[arg(long, value_name = "PRESET")]
+    pub hair: Option<String>,
+    /// Scattering model [default: gaussian]
+    #[arg(long, value_name = "NAME")]
+    pub model: Option<String>,
+    /// Hair of a file in place of a preset, in the JSON of `hairis eval`; a picture for each
+    /// material
+    #[arg(long, value_name = "FILE.json", conflicts_with_all = ["hair", "model"])]
+    pub material: Vec<PathBuf>,
+    /// Another value for a parameter of the hair
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// How directions are drawn: uniform, published, or a word of the model's
+    #[arg(long, value_name = "WORD")]
+    pub sampler: Option<String>,
 }
 
 /// Arguments of `hairis-render merge`.
@@ -289,9 +347,6 @@ impl Render {
     ///
     /// If a count or a number is out of its range.
     pub fn check(&self) -> Result<(), Error> {
-        let refuse = |flag: &str, range: &str, got: &dyn core::fmt::Display| {
-            Err(Error::Usage(format!("{flag} must be {range}, got {got}")))
-        };
         if let Some(spp) = self.spp.filter(|spp| !(1..=1 << 20).contains(spp)) {
             return refuse("--spp", "from 1 to 1048576", &spp);
         }
@@ -302,24 +357,8 @@ impl Render {
             let problem = "--time must not be given with --shard, whose parts need one count of samples: use --spp";
             return Err(Error::Usage(problem.to_owned()));
         }
-        if let Some(exposure) = self
-            .exposure
-            .filter(|exposure| !(*exposure > 0.0 && exposure.is_finite()))
-        {
-            return refuse("--exposure", "a number above 0", &exposure);
-        }
-        if let Some(backdrop) = self
-            .backdrop
-            .filter(|backdrop| !(*backdrop >= 0.0 && backdrop.is_finite()))
-        {
-            return refuse("--backdrop", "a radiance, 0 or above", &backdrop);
-        }
-        if self.follow > 1000 {
-            return refuse("--follow", "at most 1000", &self.follow);
-        }
-        if !self.turn.is_finite() {
-            return refuse("--turn", "a number of degrees", &self.turn);
-        }
+        check_exposure(self.exposure)?;
+        self.place.check()?;
         if !(1..=4096).contains(&self.aa) {
             return refuse("--aa", "from 1 to 4096", &self.aa);
         }
@@ -331,7 +370,9 @@ impl Render {
 
     /// Refuses flags that the integrator of the picture does not use.
     fn check_integrator(&self) -> Result<(), Error> {
-        let integrator = self.integrator.unwrap_or(self.scene.defaults().integrator);
+        let integrator = self
+            .integrator
+            .unwrap_or(self.place.scene.defaults().integrator);
         for (flag, is_given, user) in [
             ("--depth", self.depth.is_some(), Integrator::Path),
             ("--aa", self.aa > 1, Integrator::Gather),
@@ -345,5 +386,61 @@ impl Render {
             }
         }
         Ok(())
+    }
+}
+
+impl Fit {
+    /// Checks what depends on one flag alone.
+    ///
+    /// # Errors
+    ///
+    /// If a count or a number is out of its range.
+    pub fn check(&self) -> Result<(), Error> {
+        if !(1..=2).contains(&self.depth) {
+            return refuse("--depth", "1 or 2", &self.depth);
+        }
+        if !(2..=1000).contains(&self.iterations) {
+            return refuse("--iterations", "from 2 to 1000", &self.iterations);
+        }
+        if !(2..=1024).contains(&self.spp) || !self.spp.is_multiple_of(2) {
+            return refuse("--spp", "an even number from 2 to 1024", &self.spp);
+        }
+        check_exposure(self.exposure)?;
+        self.place.check()
+    }
+}
+
+impl Place {
+    /// Checks what depends on one flag alone.
+    ///
+    /// # Errors
+    ///
+    /// If a number is out of its range.
+    pub fn check(&self) -> Result<(), Error> {
+        if let Some(backdrop) = self
+            .backdrop
+            .filter(|backdrop| !(*backdrop >= 0.0 && backdrop.is_finite()))
+        {
+            return refuse("--backdrop", "a radiance, 0 or above", &backdrop);
+        }
+        if self.follow > 1000 {
+            return refuse("--follow", "at most 1000", &self.follow);
+        }
+        if !self.turn.is_finite() {
+            return refuse("--turn", "a number of degrees", &self.turn);
+        }
+        Ok(())
+    }
+}
+
+/// Refuses the value of a flag.
+fn refuse(flag: &str, range: &str, got: &dyn core::fmt::Display) -> Result<(), Error> {
+    Err(Error::Usage(format!("{flag} must be {range}, got {got}")))
+}
+
+fn check_exposure(exposure: Option<f64>) -> Result<(), Error> {
+    match exposure.filter(|exposure| !(*exposure > 0.0 && exposure.is_finite())) {
+        Some(exposure) => refuse("--exposure", "a number above 0", &exposure),
+        None => Ok(()),
     }
 }

@@ -1,9 +1,12 @@
 //! The subcommands.
 
+mod fit;
 mod merge;
+mod place;
 mod render;
 
-pub(crate) use render::{environment, picture_size};
+pub(crate) use place::environment;
+pub(crate) use render::picture_size;
 
 use crate::args::Command;
 use hairis_instruments::error::Error;
@@ -20,5 +23,6 @@ pub fn run(command: &Command) -> Result<(), Error> {
         Command::Render(flags) => render::run(flags),
         Command::Merge(flags) => merge::run(flags),
         Command::Figures(flags) => crate::figures::run(flags),
+        Command::Fit(flags) => fit::run(flags),
     }
 }

@@ -1,6 +1,7 @@
 //! The ellipsoid that roots of hair lie on.
 
 use crate::geometry::{HEAD, Strands};
+use crate::linear::solve;
 use crate::scene::Ellipsoid;
 use clap::ValueEnum;
 use glam::{DVec3, Vec3};
@@ -219,12 +220,12 @@ impl Surface {
         let mut damping = 1e-2;
         let mut cost = self.cost(places, proportions, outlier);
         for _ in 0..ROUNDS {
-            let (mut matrix, mut slope) = self.normal_equations(places, proportions, outlier);
+            let (mut matrix, slope) = self.normal_equations(places, proportions, outlier);
             for (k, row) in matrix.iter_mut().enumerate() {
                 row[k] *= 1.0 + damping;
                 row[k] += 1e-12;
             }
-            let step = solve(&mut matrix, &mut slope)?;
+            let step = solve(&mut matrix, &slope)?;
             let next = Self {
                 centre: self.centre - DVec3::new(step[0], step[1], step[2]),
                 logs: self.logs
@@ -297,33 +298,4 @@ impl Surface {
 /// Parts of differences of logarithms beyond the limit.
 fn excess(off: DVec3) -> DVec3 {
     off - off.clamp(DVec3::splat(-DISPROPORTION), DVec3::splat(DISPROPORTION))
-}
-
-/// Solves six linear equations by elimination with pivots.
-fn solve(matrix: &mut [[f64; 6]; 6], right: &mut [f64; 6]) -> Option<[f64; 6]> {
-    for k in 0..6 {
-        let pivot = (k..6).max_by(|&a, &b| matrix[a][k].abs().total_cmp(&matrix[b][k].abs()))?;
-        matrix.swap(k, pivot);
-        right.swap(k, pivot);
-        let lead = matrix[k][k];
-        if lead == 0.0 || !lead.is_finite() {
-            return None;
-        }
-        for below in k + 1..6 {
-            let factor = matrix[below][k] / lead;
-            let upper = matrix[k];
-            for (entry, above) in matrix[below].iter_mut().zip(upper).skip(k) {
-                *entry -= factor * above;
-            }
-            right[below] -= factor * right[k];
-        }
-    }
-    let mut solution = [0.0; 6];
-    for k in (0..6).rev() {
-        let rest: f64 = (k + 1..6)
-            .map(|column| matrix[k][column] * solution[column])
-            .sum();
-        solution[k] = (right[k] - rest) / matrix[k][k];
-    }
-    Some(solution)
 }

@@ -29,6 +29,8 @@ pub enum Name {
     Box,
     /// A head under an area light, with multiple scattering: Figure 1
     Head,
+    /// A head under four lamps, with multiple scattering: pictures whose hair `fit` recovers
+    Lamps,
     /// One strand in a white sphere
     FurnaceOne,
     /// A patch that absorbs nothing in a white sphere
@@ -60,6 +62,7 @@ impl Name {
             Self::BoxSingle => "box-single",
             Self::Box => "box",
             Self::Head => "head",
+            Self::Lamps => "lamps",
             Self::FurnaceOne => "furnace-one",
             Self::FurnaceIso => "furnace-iso",
         }
@@ -88,7 +91,7 @@ impl Name {
                 multiple: false,
                 ..paths
             },
-            Self::Box | Self::Head | Self::FurnaceOne | Self::FurnaceIso => paths,
+            Self::Box | Self::Head | Self::Lamps | Self::FurnaceOne | Self::FurnaceIso => paths,
         }
     }
 
@@ -98,7 +101,7 @@ impl Name {
         match self {
             Self::Area | Self::AreaSoft | Self::FurnaceIso => Kind::Patch,
             Self::AreaHead | Self::Env => Kind::Straight,
-            Self::BoxSingle | Self::Box | Self::Head => Kind::Wavy,
+            Self::BoxSingle | Self::Box | Self::Head | Self::Lamps => Kind::Wavy,
             Self::FurnaceOne => Kind::Single,
         }
     }
@@ -138,6 +141,14 @@ fn groom(name: Name, count: usize) -> Groom {
         groom
     }
 }
+
+/// Places of the four lamps, cm: behind, to the sides and above.
+const LAMPS: [[f32; 3]; 4] = [
+    [-30.0, 40.0, -75.0],
+    [60.0, 30.0, 50.0],
+    [-70.0, -20.0, 30.0],
+    [10.0, 80.0, 20.0],
+];
 
 /// Parts of a scene beside its name.
 #[derive(Debug)]
@@ -202,6 +213,12 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
         Name::AreaHead | Name::Head => {
             rectangles.push(lamp(at(-20.0, 30.0, -10.0), 40.0 * x, 40.0 * z, 6.0))
         }
+        Name::Lamps => rectangles.extend(LAMPS.map(|[x, y, z]| {
+            let place = Vec3::new(x, y, z);
+            let (a, b) = place.normalize().any_orthonormal_pair();
+            let corner = place - 6.0 * (a + b);
+            lamp(at(corner.x, corner.y, corner.z), 12.0 * a, 12.0 * b, 60.0)
+        })),
         Name::Env => sky = light::Sky::default().environment().into(),
         Name::BoxSingle | Name::Box => rectangles = cornell_box(centre, scale),
         Name::FurnaceOne | Name::FurnaceIso => sky = light::Constant.into(),
@@ -220,7 +237,7 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
         }
         Name::FurnaceOne => Camera::new(at(0.0, 0.0, 100.0), centre, 8.0, size),
         Name::FurnaceIso => Camera::new(at(6.0, 14.0, 26.0), centre, 30.0, size),
-        Name::AreaHead | Name::Env | Name::Head => {
+        Name::AreaHead | Name::Env | Name::Head | Name::Lamps => {
             Camera::new(at(0.0, 6.0, 68.0), at(0.0, -2.0, 0.0), 36.0, size)
         }
     };

@@ -5,6 +5,7 @@ mod cut_off;
 mod gather;
 mod path;
 mod profile;
+mod recorded;
 mod resampled;
 #[cfg(test)]
 mod tests;
@@ -13,6 +14,7 @@ mod wave;
 pub use clock::seconds_of_thread;
 pub use cut_off::{CutOff, cut_off};
 pub use profile::{Phase, Profile};
+pub use recorded::{Recorded, Term, record};
 
 use crate::film::{Crop, Film, Tile};
 use crate::lights::Tables;

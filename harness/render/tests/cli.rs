@@ -1,5 +1,6 @@
 //! The program, as it is run from a shell.
 
+mod fit;
 mod frames;
 mod hair;
 mod imported;

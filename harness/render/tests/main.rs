@@ -3,6 +3,7 @@
 mod agreement;
 mod bits;
 mod cli;
+mod fit;
 mod furnace;
 mod groom;
 mod heads;

@@ -2,20 +2,18 @@
 
 mod description;
 
+use super::place::{Ground, choices};
 use crate::args::Render;
 use crate::film::{self, Crop, Film};
-use crate::formats::{self, Follow, Import, Imported, import, import_head, write_hair};
-use crate::geometry::Strands;
-use crate::hair::{Choice, Energy, check_paths, default_sampler};
+use crate::formats::write_hair;
+use crate::hair::{Choice, Energy, check_paths};
 use crate::layers::{self, Beside};
 use crate::material::Hair;
-use crate::memory;
 use crate::part::{self, Part};
 use crate::picture;
 use crate::saver::Saver;
-use crate::scalp;
-use crate::scene::{Head, Scene};
-use crate::scenes::{self, Name, Parts};
+use crate::scene::Scene;
+use crate::scenes::Name;
 use crate::transport::{self, CutOff, Integrator, Settings};
 use core::time::Duration;
 use description::describe;
@@ -23,11 +21,9 @@ pub(crate) use description::picture_size;
 use hairis_instruments::error::Error;
 use hairis_instruments::files::{whole, writable};
 use hairis_instruments::interrupt::Interrupt;
-use hairis_instruments::light::Environment;
 use hairis_instruments::program::say;
 use hairis_instruments::progress::{share_bar, show_share};
 use hairis_instruments::shard::Shard;
-use hairis_materials::files;
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -38,9 +34,6 @@ const PREVIEW: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)]
 /// Least time between previews, in times of the last preview.
 const PREVIEW_SHARE: u32 = 10;
 
-/// The model of presets where none is asked for.
-const MODEL: &str = "gaussian";
-
 /// Renders a scene, with each hair that is asked for.
 ///
 /// # Errors
@@ -49,7 +42,7 @@ const MODEL: &str = "gaussian";
 pub(super) fn run(flags: &Render) -> Result<(), Error> {
     flags.check()?;
     let crop = flags.part()?;
-    let defaults = flags.scene.defaults();
+    let defaults = flags.place.scene.defaults();
     let settings = Settings {
         integrator: flags.integrator.unwrap_or(defaults.integrator),
         sequence: flags.xi,
@@ -64,48 +57,16 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     let out = flags
         .out
         .clone()
-        .unwrap_or_else(|| PathBuf::from(format!("out/render/{}.exr", flags.scene.word())));
+        .unwrap_or_else(|| PathBuf::from(format!("out/render/{}.exr", flags.place.scene.word())));
     let hairs = hairs(flags, &settings)?;
     let outs = outs(&out, &hairs)?;
-    let read = |path| environment(path, flags.layer.as_deref());
-    let env = flags.env.as_deref().map(read).transpose()?;
-    let pixels = crop.len() as u64;
-    let (strands, head) = match &flags.import {
-        Some(path) => {
-            let Imported { strands, scale, .. } = read_hair(flags, path)?;
-            let head = read_head(flags, &strands, scale)?;
-            let triangles = head.as_ref().map_or(0, Head::triangles);
-            memory::check((strands.segments() + triangles) as u64, pixels)?;
-            (strands, head)
-        }
-        None => {
-            memory::check(
-                scenes::estimate_segments(flags.scene, flags.strands)?,
-                pixels,
-            )?;
-            (scenes::grow(flags.scene, flags.strands)?, None)
-        }
-    };
+    let ground = Ground::read(&flags.place, crop.len())?;
     if let Some(path) = &flags.export {
-        whole(path, |out| write_hair(path, &strands, out))?;
+        whole(path, |out| write_hair(path, &ground.strands, out))?;
     }
-    let describe = |hair: &Named| describe(flags, &hair.line, &settings, crop, env.as_ref());
+    let describe = |hair: &Named| describe(flags, &hair.line, &settings, crop, ground.env.as_ref());
     let runs = hairs.iter().map(describe).collect::<Result<Vec<_>, _>>()?;
-    let parts = Parts {
-        strands,
-        imported: flags.import.is_some(),
-        head,
-        hair: hairs[0].hair,
-        env,
-        size: flags.size.0,
-        turn: flags.turn,
-    };
-    let backdrop = flags.backdrop.map(glam::Vec3::splat);
-    let mut scene = Scene {
-        backdrop,
-        rectangle_sampling: flags.rectangles,
-        ..scenes::build(flags.scene, parts)?
-    };
+    let mut scene = ground.scene(&flags.place, hairs[0].hair, flags.size.0)?;
     outs.iter().try_for_each(|out| check_out(out))?;
     let interrupt = Interrupt::watch();
     for ((hair, out), run) in hairs.iter().zip(&outs).zip(runs) {
@@ -140,7 +101,7 @@ fn picture(
         film: Film::with_tiles(crop, film::side(rays)).shard(shard),
         finished: false,
     };
-    let samples = flags.spp.unwrap_or(flags.scene.defaults().samples);
+    let samples = flags.spp.unwrap_or(flags.place.scene.defaults().samples);
     let most = flags.time.is_none().then_some(samples);
     let (mut part, log) = Part::resume(&part_path, fresh, most)?;
     let mut saver = Saver::new(log, interrupt);
@@ -219,36 +180,21 @@ struct Named {
 
 /// The hair that the flags ask for: a picture each, at least one.
 fn hairs(flags: &Render, settings: &Settings) -> Result<Vec<Named>, Error> {
-    let is_chosen = flags.hair.is_some() || flags.model.is_some() || flags.sampler.is_some();
-    let is_made = !flags.material.is_empty() || !flags.set.is_empty();
-    if flags.scene == Name::FurnaceIso && !is_chosen && !is_made {
+    let is_chosen =
+        flags.looks.hair.is_some() || flags.looks.model.is_some() || flags.looks.sampler.is_some();
+    let is_made = !flags.looks.material.is_empty() || !flags.looks.set.is_empty();
+    if flags.place.scene == Name::FurnaceIso && !is_chosen && !is_made {
         return Ok(vec![Named {
             hair: Hair::Isotropic,
             name: "isotropic".to_owned(),
             line: "hair=isotropic".to_owned(),
         }]);
     }
-    let mut choices = Vec::new();
-    if flags.material.is_empty() {
-        let preset = flags.scene.defaults().preset;
-        let preset = flags.hair.as_deref().unwrap_or(preset);
-        let model = flags.model.as_deref().unwrap_or(MODEL);
-        let sampler = flags.sampler.as_deref();
-        let sampler = sampler.unwrap_or_else(|| default_sampler(model));
-        choices.push(Choice::find(model, sampler, preset)?);
-    }
-    for (name, material) in files::read(&flags.material)
-        .map_err(|problem| Error::Usage(format!("--material {problem}")))?
-    {
-        let sampler = flags.sampler.as_deref();
-        choices.push(Choice::of_material(&name, &material, sampler)?);
-    }
     let named = |choice: Choice| {
-        let choice = choice.set(&flags.set)?;
         let energy = flags.energy.unwrap_or(Energy::Raw);
         let hair = choice.hair(energy)?;
         let [mean, worst] = hair.mean_and_worst_albedo();
-        let whose = if flags.material.is_empty() {
+        let whose = if flags.looks.material.is_empty() {
             "the hair"
         } else {
             &choice.name
@@ -271,7 +217,10 @@ fn hairs(flags: &Render, settings: &Settings) -> Result<Vec<Named>, Error> {
             line,
         })
     };
-    choices.into_iter().map(named).collect()
+    choices(&flags.looks, &flags.place)?
+        .into_iter()
+        .map(named)
+        .collect()
 }
 
 /// The files of the pictures: of several, each with the name of its hair.
@@ -312,68 +261,6 @@ fn has_ending(path: &Path) -> bool {
 fn wrong_ending(path: &Path) -> Error {
     let path = path.display();
     Error::Usage(format!("the picture must end in .exr, got {path}"))
-}
-
-/// Reads an environment map, and remarks on what is odd about it.
-pub(crate) fn environment(path: &Path, layer: Option<&str>) -> Result<Environment, Error> {
-    let map = Environment::load_layer(path, layer).map_err(Error::Environment)?;
-    for note in map.notes() {
-        say(&note);
-    }
-    Ok(map)
-}
-
-/// Reads hair, and remarks on what is odd about it.
-fn read_hair(flags: &Render, path: &Path) -> Result<Imported, Error> {
-    let follow = Follow {
-        strands: flags.follow,
-        spread: flags.spread,
-    };
-    let options = Import {
-        radius: flags.radius,
-        scale: flags.scale,
-        up: flags.up,
-        curve: flags.curve,
-        follow,
-    };
-    let imported = import(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
-    for remark in &imported.remarks {
-        say(&format!("{}: {remark}", path.display()));
-    }
-    if imported.strands.strands() == 0 {
-        return Err(Error::Usage(format!(
-            "{}: there is no strand to render",
-            path.display()
-        )));
-    }
-    Ok(imported)
-}
-
-/// The head under hair from a file of this scale, if flags ask for one.
-fn read_head(flags: &Render, strands: &Strands, scale: f32) -> Result<Option<Head>, Error> {
-    if flags.scalp.is_some() {
-        let fit = scalp::fit(strands).map_err(Error::Usage)?;
-        say(&fit.to_string());
-        return Ok(Some(Head::ellipsoid(fit.ellipsoid)));
-    }
-    let Some(path) = &flags.head else {
-        return Ok(None);
-    };
-    let options = formats::Head {
-        scale: flags.head_scale.unwrap_or(scale),
-        up: flags.up,
-    };
-    let mesh = import_head(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
-    let [head, hair] = [mesh.bounds(), strands.bounds()].map(|bounds| bounds.size().length());
-    if !(0.1..=10.0).contains(&(head / hair)) {
-        say(&format!(
-            "{}: warning: the head is {head} cm across and the hair {hair} cm: --head-scale sets centimetres per unit of the \
-             head (here {})",
-            path.display(),
-            options.scale
-        ));
-    }
-    Ok(Some(Head::mesh(mesh)))
 }
 
 /// Renders pass by pass, saving what there is; from time to time writes the picture so far, with

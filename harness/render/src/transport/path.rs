@@ -101,7 +101,7 @@ fn trace(scene: &Scene, settings: &Settings, wave: &mut Wave, is_first: bool) {
 }
 
 /// Scatters at surfaces; puts the hits of hair into the queue, and ends the paths that go no further.
-fn surfaces(scene: &Scene, settings: &Settings, wave: &mut Wave) {
+pub(super) fn surfaces(scene: &Scene, settings: &Settings, wave: &mut Wave) {
     wave.hits.clear();
     for (k, (path, met)) in (0..).zip(wave.paths.iter_mut().zip(&wave.met)) {
         match met {
@@ -158,6 +158,35 @@ fn reflect(
     shadow
 }
 
+/// Eight hits of a queue: their frames and places. Lanes that have no hit repeat the first.
+pub(super) struct Packet {
+    pub(super) frames: FiberFrame8,
+    pub(super) origins: [Vec3; 8],
+    pub(super) hits: Hit8,
+}
+
+impl Packet {
+    #[inline(always)]
+    pub(super) fn new(scene: &Scene, paths: &[Path], packet: &[(u32, tree::Hit)]) -> Self {
+        let lanes = |lane: usize| packet.get(lane).unwrap_or(&packet[0]);
+        let at = |lane: usize| (&paths[lanes(lane).0 as usize], lanes(lane).1);
+        let wo: [Vec3; 8] = core::array::from_fn(|lane| -at(lane).0.ray.direction);
+        let tangents: [Vec3; 8] =
+            core::array::from_fn(|lane| scene.strands.tangent(at(lane).1.segment, at(lane).1.s));
+        let wo = Vec3x8::from(wo);
+        let frames = FiberFrame8::from_tangents_normals(&tangents.into(), &wo);
+        let h = f32x8::new(core::array::from_fn(|lane| at(lane).1.h));
+        let origins =
+            core::array::from_fn(|lane| scene.strands.position(at(lane).1.segment, at(lane).1.s));
+        let hits = Hit8::new(frames.to_local(&wo), h);
+        Self {
+            frames,
+            origins,
+            hits,
+        }
+    }
+}
+
 /// Scatters at hair, eight hits at a time. Lanes of the last packet that have no hit repeat its first.
 fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave) {
     let Wave {
@@ -167,17 +196,12 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
         ..
     } = wave;
     for packet in hits.chunks(8) {
+        let Packet {
+            frames,
+            origins,
+            hits,
+        } = Packet::new(scene, paths, packet);
         let lanes = |lane: usize| packet.get(lane).unwrap_or(&packet[0]);
-        let at = |lane: usize| (&paths[lanes(lane).0 as usize], lanes(lane).1);
-        let wo: [Vec3; 8] = core::array::from_fn(|lane| -at(lane).0.ray.direction);
-        let tangents: [Vec3; 8] =
-            core::array::from_fn(|lane| scene.strands.tangent(at(lane).1.segment, at(lane).1.s));
-        let wo = Vec3x8::from(wo);
-        let frames = FiberFrame8::from_tangents_normals(&tangents.into(), &wo);
-        let h = f32x8::new(core::array::from_fn(|lane| at(lane).1.h));
-        let origins: [Vec3; 8] =
-            core::array::from_fn(|lane| scene.strands.position(at(lane).1.segment, at(lane).1.s));
-        let hits = Hit8::new(frames.to_local(&wo), h);
         lap(Phase::Frames);
         let prepared = scene.hair.prepare8(&hits);
         lap(Phase::Kernels);
@@ -309,7 +333,7 @@ pub(super) fn leave(
 ///
 /// Both are relative to the camera ray and not to the scattering before, which would keep what one
 /// weight has raised and end what the next lowers.
-fn end_some(wave: &mut Wave, roulette: bool) {
+pub(super) fn end_some(wave: &mut Wave, roulette: bool) {
     let Wave { paths, parts, .. } = wave;
     paths.retain_mut(|path| {
         let most = path.throughput.max_element();

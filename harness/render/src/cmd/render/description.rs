@@ -1,6 +1,6 @@
 //! The line that tells runs apart.
 
-use crate::args::{Render, Size};
+use crate::args::{Place, Render, Size};
 use crate::film::Crop;
 use crate::part::{build, digest};
 use crate::transport::Settings;
@@ -24,8 +24,30 @@ pub(super) fn describe(
 ) -> Result<String, Error> {
     // Without `..`: whoever adds a flag decides whether it shapes the sums.
     let Render {
-        scene,
+        place,
         size: Size([columns, rows]),
+        // In the hair, the settings, the crop and the environment.
+        looks: _,
+        energy: _,
+        integrator: _,
+        xi: _,
+        mis: _,
+        depth: _,
+        no_multiple: _,
+        aa: _,
+        seed: _,
+        crop: _,
+        // How much is rendered, what else is done, and where files lie.
+        spp: _,
+        time: _,
+        shard: _,
+        profile: _,
+        exposure: _,
+        export: _,
+        out: _,
+    } = flags;
+    let Place {
+        scene,
         strands,
         import,
         scale,
@@ -40,32 +62,10 @@ pub(super) fn describe(
         turn,
         backdrop,
         rectangles,
-        // In the hair, the settings, the crop and the environment.
-        hair: _,
-        model: _,
-        sampler: _,
-        material: _,
-        set: _,
-        energy: _,
-        integrator: _,
-        xi: _,
-        mis: _,
-        depth: _,
-        no_multiple: _,
-        aa: _,
-        seed: _,
-        crop: _,
+        // In the environment.
         env: _,
         layer: _,
-        // How much is rendered, what else is done, and where files lie.
-        spp: _,
-        time: _,
-        shard: _,
-        profile: _,
-        exposure: _,
-        export: _,
-        out: _,
-    } = flags;
+    } = place;
     let Settings {
         integrator,
         sequence,

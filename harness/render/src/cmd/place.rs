@@ -1,0 +1,167 @@
+//! What the flags of a scene ask for: hair, head, light and camera.
+
+use crate::args::{Looks, Place};
+use crate::formats::{self, Follow, Import, Imported, import, import_head};
+use crate::geometry::Strands;
+use crate::hair::{Choice, default_sampler};
+use crate::material::Hair;
+use crate::memory;
+use crate::scalp;
+use crate::scene::{Head, Scene};
+use crate::scenes::{self, Parts};
+use hairis_instruments::error::Error;
+use hairis_instruments::light::Environment;
+use hairis_instruments::program::say;
+use hairis_materials::files;
+use std::path::Path;
+
+/// The model of presets where none is asked for.
+const MODEL: &str = "gaussian";
+
+/// Hair, head and map of a scene.
+pub(super) struct Ground {
+    pub(super) strands: Strands,
+    head: Option<Head>,
+    pub(super) env: Option<Environment>,
+}
+
+impl Ground {
+    /// Reads the files of a scene, or grows its hair, for a picture of so many pixels.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be read, or there is not enough memory.
+    pub(super) fn read(flags: &Place, pixels: usize) -> Result<Self, Error> {
+        let pixels = pixels as u64;
+        let read = |path| environment(path, flags.layer.as_deref());
+        let env = flags.env.as_deref().map(read).transpose()?;
+        let (strands, head) = match &flags.import {
+            Some(path) => {
+                let Imported { strands, scale, .. } = read_hair(flags, path)?;
+                let head = read_head(flags, &strands, scale)?;
+                let triangles = head.as_ref().map_or(0, Head::triangles);
+                memory::check((strands.segments() + triangles) as u64, pixels)?;
+                (strands, head)
+            }
+            None => {
+                memory::check(
+                    scenes::estimate_segments(flags.scene, flags.strands)?,
+                    pixels,
+                )?;
+                (scenes::grow(flags.scene, flags.strands)?, None)
+            }
+        };
+        Ok(Self { strands, head, env })
+    }
+
+    /// The scene with this hair, for a picture of this size.
+    ///
+    /// # Errors
+    ///
+    /// If the strands are too thin for their extent.
+    pub(super) fn scene(self, flags: &Place, hair: Hair, size: [u32; 2]) -> Result<Scene, Error> {
+        let parts = Parts {
+            strands: self.strands,
+            imported: flags.import.is_some(),
+            head: self.head,
+            hair,
+            env: self.env,
+            size,
+            turn: flags.turn,
+        };
+        Ok(Scene {
+            backdrop: flags.backdrop.map(glam::Vec3::splat),
+            rectangle_sampling: flags.rectangles,
+            ..scenes::build(flags.scene, parts)?
+        })
+    }
+}
+
+/// The materials that the flags ask for, at least one.
+///
+/// # Errors
+///
+/// If a file cannot be read, or a name or a value is refused.
+pub(super) fn choices(flags: &Looks, place: &Place) -> Result<Vec<Choice>, Error> {
+    let mut choices = Vec::new();
+    if flags.material.is_empty() {
+        let preset = place.scene.defaults().preset;
+        let preset = flags.hair.as_deref().unwrap_or(preset);
+        let model = flags.model.as_deref().unwrap_or(MODEL);
+        let sampler = flags.sampler.as_deref();
+        let sampler = sampler.unwrap_or_else(|| default_sampler(model));
+        choices.push(Choice::find(model, sampler, preset)?);
+    }
+    for (name, material) in files::read(&flags.material)
+        .map_err(|problem| Error::Usage(format!("--material {problem}")))?
+    {
+        let sampler = flags.sampler.as_deref();
+        choices.push(Choice::of_material(&name, &material, sampler)?);
+    }
+    choices
+        .into_iter()
+        .map(|choice| choice.set(&flags.set))
+        .collect()
+}
+
+/// Reads an environment map, and remarks on what is odd about it.
+pub(crate) fn environment(path: &Path, layer: Option<&str>) -> Result<Environment, Error> {
+    let map = Environment::load_layer(path, layer).map_err(Error::Environment)?;
+    for note in map.notes() {
+        say(&note);
+    }
+    Ok(map)
+}
+
+/// Reads hair, and remarks on what is odd about it.
+fn read_hair(flags: &Place, path: &Path) -> Result<Imported, Error> {
+    let follow = Follow {
+        strands: flags.follow,
+        spread: flags.spread,
+    };
+    let options = Import {
+        radius: flags.radius,
+        scale: flags.scale,
+        up: flags.up,
+        curve: flags.curve,
+        follow,
+    };
+    let imported = import(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
+    for remark in &imported.remarks {
+        say(&format!("{}: {remark}", path.display()));
+    }
+    if imported.strands.strands() == 0 {
+        return Err(Error::Usage(format!(
+            "{}: there is no strand to render",
+            path.display()
+        )));
+    }
+    Ok(imported)
+}
+
+/// The head under hair from a file of this scale, if flags ask for one.
+fn read_head(flags: &Place, strands: &Strands, scale: f32) -> Result<Option<Head>, Error> {
+    if flags.scalp.is_some() {
+        let fit = scalp::fit(strands).map_err(Error::Usage)?;
+        say(&fit.to_string());
+        return Ok(Some(Head::ellipsoid(fit.ellipsoid)));
+    }
+    let Some(path) = &flags.head else {
+        return Ok(None);
+    };
+    let options = formats::Head {
+        scale: flags.head_scale.unwrap_or(scale),
+        up: flags.up,
+    };
+    let mesh = import_head(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
+    let [head, hair] = [mesh.bounds(), strands.bounds()].map(|bounds| bounds.size().length());
+    if !(0.1..=10.0).contains(&(head / hair)) {
+        say(&format!(
+            "{}: warning: the head is {head} cm across and the hair {hair} cm: --head-scale sets centimetres per unit of the \
+             head (here {})",
+            path.display(),
+            options.scale
+        ));
+    }
+    Ok(Some(Head::mesh(mesh)))
+}

@@ -1,0 +1,218 @@
+//! The picture that is fitted.
+
+use crate::cmd::picture_size;
+use crate::film::{Crop, Picture};
+use exr::prelude::{AttributeValue, FlatSamples, Text, read_first_flat_layer_from_file};
+use std::path::Path;
+
+/// Pixels to each side whose mean weighs a pixel: few enough to follow the light, and enough that the noise of the pixel itself
+/// has little part in its weight. Weights by the pixel alone would favour those that are dark by chance.
+const REACH: u32 = 3;
+/// Radiance that is added to that of the pixel, relative to the mean of the picture.
+const FLOOR: f64 = 0.1;
+/// Longest side of a picture.
+const LONGEST: usize = 16384;
+
+/// A picture with the weights of its pixels.
+#[derive(Clone, Debug)]
+pub struct Target {
+    crop: Crop,
+    size: [u32; 2],
+    radiance: Vec<[f64; 3]>,
+    weights: Vec<[f64; 3]>,
+    run: Option<String>,
+}
+
+impl Target {
+    /// The part of a picture of `size` pixels, with weights `1 / (mean^2 + floor^2)` per channel over its count of pixels: the mean of
+    /// the pixels around, and a tenth of that of the picture.
+    ///
+    /// # Errors
+    ///
+    /// If a pixel is not finite, or a channel is black.
+    pub fn new(picture: &Picture, crop: Crop, size: [u32; 2]) -> Result<Self, String> {
+        for (pixel, radiance) in crop.pixels().zip(&picture.pixels) {
+            if let Some(c) = (0..3).find(|c| !radiance[*c].is_finite()) {
+                let ([x, y], channel) = (pixel, ["R", "G", "B"][c]);
+                return Err(format!(
+                    "{channel} of the pixel {x},{y} must be finite, got {}",
+                    radiance[c]
+                ));
+            }
+        }
+        let mean = picture.mean();
+        if let Some(c) = (0..3).find(|c| mean[*c] <= 0.0) {
+            let channel = ["R", "G", "B"][c];
+            return Err(format!(
+                "the mean of {channel} must be above 0, got {}",
+                mean[c]
+            ));
+        }
+        let share = 1.0 / picture.pixels.len() as f64;
+        let weights = smooth(picture)
+            .iter()
+            .map(|around| {
+                core::array::from_fn(|c| share / (around[c].powi(2) + (FLOOR * mean[c]).powi(2)))
+            })
+            .collect();
+        Ok(Self {
+            crop,
+            size,
+            radiance: picture.pixels.clone(),
+            weights,
+            run: None,
+        })
+    }
+
+    /// Reads a picture: the channels R, G and B of the first layer. A data window within a larger display window is a part of the
+    /// picture.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be read, has no such channels or pixels that are not finite, or reaches beyond its display window.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        let image = read_first_flat_layer_from_file(path).map_err(|problem| {
+            let line = problem.to_string().replace(['\n', '\r'], " ");
+            format!("cannot read: {line}")
+        })?;
+        let layer = &image.layer_data;
+        let channels = &layer.channel_data.list;
+        let channel = |name: &str| {
+            let found = channels.iter().find(|one| one.name == *name);
+            found.map(|one| &one.sample_data).ok_or_else(|| {
+                let names: Vec<String> = channels.iter().map(|one| one.name.to_string()).collect();
+                format!("the channels must be R, G and B, got {}", names.join(", "))
+            })
+        };
+        let rgb = [channel("R")?, channel("G")?, channel("B")?];
+        let window = image.attributes.display_window;
+        let side = |pixels: usize| {
+            u32::try_from(pixels).ok().filter(|_| pixels <= LONGEST).ok_or_else(|| {
+                format!("the sides of the display window must have at most {LONGEST} pixels, got {pixels}")
+            })
+        };
+        let size = [side(window.size.width())?, side(window.size.height())?];
+        let corner = layer.attributes.layer_position - window.position;
+        let (width, height) = (layer.size.width(), layer.size.height());
+        let within = |from: i32, count: usize, all: u32| {
+            let from = u32::try_from(from).ok()?;
+            let count = u32::try_from(count).ok()?;
+            from.checked_add(count).filter(|end| *end <= all)?;
+            Some((from, count))
+        };
+        let (Some((x, width)), Some((y, height))) = (
+            within(corner.x(), width, size[0]),
+            within(corner.y(), height, size[1]),
+        ) else {
+            return Err(format!(
+                "the data window must lie within the display window of {} x {} pixels, got {width} x {height} from {} {}",
+                size[0],
+                size[1],
+                corner.x(),
+                corner.y()
+            ));
+        };
+        let crop = Crop {
+            x,
+            y,
+            width,
+            height,
+        };
+        if let Some((one, name)) = rgb
+            .iter()
+            .zip(["R", "G", "B"])
+            .find(|(one, _)| one.len() != crop.len())
+        {
+            return Err(format!(
+                "{name} must have a sample per pixel, {}, got {}: write every channel in full",
+                crop.len(),
+                one.len()
+            ));
+        }
+        let picture = Picture {
+            size: [width, height],
+            pixels: (0..crop.len())
+                .map(|place| rgb.map(|samples| number(samples, place)))
+                .collect(),
+        };
+        let run = match layer.attributes.other.get(&Text::from("run")) {
+            Some(AttributeValue::Text(text)) => Some(text.to_string()),
+            _ => None,
+        };
+        // Files of this renderer say how large the picture is that they are a part of.
+        let size = run.as_deref().and_then(picture_size).unwrap_or(size);
+        Ok(Self {
+            run,
+            ..Self::new(&picture, crop, size)?
+        })
+    }
+
+    /// The part of the picture.
+    #[must_use]
+    pub fn crop(&self) -> Crop {
+        self.crop
+    }
+
+    /// Width and height of the whole picture in pixels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// The picture.
+    #[must_use]
+    pub fn picture(&self) -> Picture {
+        Picture {
+            size: [self.crop.width, self.crop.height],
+            pixels: self.radiance.clone(),
+        }
+    }
+
+    /// Radiance and weights of a pixel.
+    #[must_use]
+    pub fn pixel(&self, pixel: [u32; 2]) -> ([f64; 3], [f64; 3]) {
+        let place = self.crop.index(pixel);
+        (self.radiance[place], self.weights[place])
+    }
+
+    /// The settings of this renderer that its light differs by from `expected`, each `name=value`, if the file says so.
+    #[must_use]
+    pub fn differences(&self, expected: &[String]) -> Vec<String> {
+        let words: Vec<&str> = self.run.as_deref().unwrap_or_default().split(' ').collect();
+        let differs = |setting: &String| {
+            let (name, _) = setting.split_once('=')?;
+            let found = words
+                .iter()
+                .find(|word| word.split_once('=').is_some_and(|(other, _)| other == name))?;
+            (*found != setting).then(|| format!("{found} in place of {setting}"))
+        };
+        expected.iter().filter_map(differs).collect()
+    }
+}
+
+fn number(samples: &FlatSamples, place: usize) -> f64 {
+    match samples {
+        FlatSamples::F16(numbers) => f64::from(numbers[place].to_f32()),
+        FlatSamples::F32(numbers) => f64::from(numbers[place]),
+        FlatSamples::U32(numbers) => f64::from(numbers[place]),
+    }
+}
+
+/// Means over the pixels around each.
+fn smooth(picture: &Picture) -> Vec<[f64; 3]> {
+    let [width, height] = picture.size;
+    let around = |at: u32, count: u32| at.saturating_sub(REACH)..(at + REACH + 1).min(count);
+    let pixels = Crop::whole(picture.size).pixels();
+    let mean = |[x, y]: [u32; 2]| {
+        let (columns, rows) = (around(x, width), around(y, height));
+        let by = 1.0 / (columns.len() * rows.len()) as f64;
+        let mut sum = [0.0; 3];
+        for pixel in rows.flat_map(|y| columns.clone().map(move |x| picture.at(x, y))) {
+            for (sum, channel) in sum.iter_mut().zip(pixel) {
+                *sum += by * channel;
+            }
+        }
+        sum
+    };
+    pixels.map(mean).collect()
+}

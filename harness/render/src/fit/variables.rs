@@ -1,0 +1,310 @@
+//! Variables of a fit: factors on numbers of a model's fields.
+
+use hairis_materials::material::single;
+use hairis_variants::{Field, Kind, Values};
+
+/// Longest step of a logarithm.
+const LOG_STEP: f64 = 0.3;
+/// Longest step of any other variable.
+const STEP: f64 = 0.05;
+/// Largest logarithm of a factor.
+const MOST_LOG: f64 = 10.0;
+/// Number that takes the place of 0 where a factor on it is looked for.
+const LEAST: f64 = 1e-3;
+/// Fields that are neither colours, widths nor shifts of lobes.
+const HELD: &[&str] = &["i_r", "phi_g", "i_g", "eta"];
+/// Fields whose numbers have common factors: per group, or else per channel to this power.
+const TIED: &[(&str, Tie)] = &[
+    ("alpha", Tie::Group("shifts")),
+    ("beta", Tie::Group("widths")),
+    ("gamma_tt", Tie::Group("widths")),
+    ("gamma_g", Tie::Group("widths")),
+    ("i_tt", Tie::Channel(1.0)),
+    ("i_trt", Tie::Channel(2.0)),
+];
+
+#[derive(Clone, Copy)]
+enum Tie {
+    Group(&'static str),
+    Channel(f64),
+}
+
+/// Number of a field: the index of the field, and its place there.
+type Place = [usize; 2];
+
+/// One variable, 0 at the start: `number = base exp(power x)`, or `base + x`.
+#[derive(Clone, Debug)]
+struct Variable {
+    key: String,
+    /// Numbers that depend on it, and their powers.
+    members: Vec<(Place, f64)>,
+    is_log: bool,
+    /// Least and largest variable.
+    range: [f64; 2],
+}
+
+/// The variables of a fit. Words stay as they are.
+///
+/// The published model has one factor on all shifts, one on all widths, and per channel one on the transmittance of a passage through
+/// the fibre, which TT makes once and TRT twice. Numbers of other models, but for the index of refraction, are variables of their own.
+#[derive(Clone, Debug)]
+pub struct Variables {
+    base: Values,
+    all: Vec<Variable>,
+}
+
+impl Variables {
+    /// The variables of values. Numbers of fields that are `fixed` stay, and those of fields that are `free` are variables of
+    /// their own.
+    #[must_use]
+    pub fn new(start: &Values, fixed: &[String], free: &[String]) -> Self {
+        let (mut base, mut all) = (*start, Vec::<Variable>::new());
+        for (index, field) in start.fields().iter().enumerate() {
+            let is_in = |names: &[String]| names.iter().any(|name| name == field.name);
+            let is_free = is_in(free);
+            let is_held = is_in(fixed) || (HELD.contains(&field.name) && !is_free);
+            let Some(range) = field.range().filter(|_| !is_held && start.has_at(index)) else {
+                continue;
+            };
+            let range = range.map(f64::from);
+            let tie = TIED
+                .iter()
+                .find(|(name, _)| *name == field.name && !is_free);
+            let mut numbers = start.numbers_at(index).to_vec();
+            for (place, number) in numbers.iter_mut().enumerate() {
+                let label = label(field, place);
+                let (key, power, is_log) = match tie {
+                    Some((_, Tie::Group(key))) => ((*key).to_owned(), 1.0, true),
+                    Some((_, Tie::Channel(power))) => (format!("colour {place}"), *power, true),
+                    None => (label, 1.0, range[0] >= 0.0),
+                };
+                if is_log && *number == 0.0 && tie.is_none() {
+                    *number = single(LEAST.min(range[1]));
+                }
+                if is_log && *number == 0.0 {
+                    continue;
+                }
+                let limits = limits(f64::from(*number), power, is_log, range);
+                let member = ([index, place], power);
+                match all.iter_mut().find(|one| one.key == key) {
+                    Some(one) => {
+                        one.members.push(member);
+                        one.range[0] = one.range[0].max(limits[0]);
+                        one.range[1] = one.range[1].min(limits[1]);
+                    }
+                    None => all.push(Variable {
+                        key,
+                        members: vec![member],
+                        is_log,
+                        range: limits,
+                    }),
+                }
+            }
+            let set = base.set_at(index, &numbers);
+            debug_assert!(set.is_ok(), "a field of the model");
+        }
+        Self { base, all }
+    }
+
+    /// Count of the variables.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    fn members(&self) -> impl Iterator<Item = (usize, Place, f64)> + '_ {
+        let of_variable = |(k, one): (usize, &Variable)| {
+            let members = one.members.clone().into_iter();
+            members.map(move |(place, power)| (k, place, power))
+        };
+        self.all.iter().enumerate().flat_map(of_variable)
+    }
+
+    /// Names of the numbers that depend on the variables: the field, with a label where the field has several.
+    #[must_use]
+    pub fn names(&self) -> Vec<String> {
+        let fields = self.base.fields();
+        self.members()
+            .map(|(_, [index, place], _)| label(&fields[index], place))
+            .collect()
+    }
+
+    /// The numbers that depend on the variables.
+    #[must_use]
+    pub fn numbers(&self, x: &[f64]) -> Vec<f64> {
+        let number = |(k, at, power)| self.number(k, at, power, x[k]);
+        self.members().map(number).collect()
+    }
+
+    fn number(&self, k: usize, at: Place, power: f64, x: f64) -> f64 {
+        let base = f64::from(self.base.numbers_at(at[0])[at[1]]);
+        if self.all[k].is_log {
+            base * (power * x).exp()
+        } else {
+            base + x
+        }
+    }
+
+    /// Derivatives of the numbers, each by its variable.
+    #[must_use]
+    pub fn slopes(&self, x: &[f64]) -> Vec<f64> {
+        let slope = |(k, at, power): (usize, Place, f64)| {
+            if self.all[k].is_log {
+                power * self.number(k, at, power, x[k])
+            } else {
+                1.0
+            }
+        };
+        self.members().map(slope).collect()
+    }
+
+    /// A number per variable spread to the numbers that depend on it.
+    #[must_use]
+    pub fn spread(&self, of_variables: &[f64]) -> Vec<f64> {
+        self.members().map(|(k, ..)| of_variables[k]).collect()
+    }
+
+    /// The values of variables.
+    #[must_use]
+    pub fn values(&self, x: &[f64]) -> Values {
+        let mut values = self.base;
+        for (k, at, power) in self.members() {
+            let mut numbers = values.numbers_at(at[0]).to_vec();
+            let [least, most] = self.base.fields()[at[0]].range().unwrap_or_default();
+            numbers[at[1]] = single(self.number(k, at, power, x[k])).clamp(least, most);
+            let set = values.set_at(at[0], &numbers);
+            debug_assert!(set.is_ok(), "a field of the model");
+        }
+        values
+    }
+
+    /// Derivatives by the variables, from those by numbers of the fields.
+    #[must_use]
+    pub fn derivatives(&self, by_numbers: &Values<f64>, slopes: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.len()];
+        for ((k, [index, place], _), slope) in self.members().zip(slopes) {
+            sums[k] += slope * by_numbers.numbers_at(index)[place];
+        }
+        sums
+    }
+
+    /// Variables after a step, which is shortened to the longest that is allowed.
+    #[must_use]
+    pub fn after(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
+        let most = |one: &Variable| if one.is_log { LOG_STEP } else { STEP };
+        let shares = self
+            .all
+            .iter()
+            .zip(step)
+            .map(|(one, s)| s.abs() / most(one));
+        let longest = shares.fold(1.0, f64::max);
+        let moved = self.all.iter().zip(x).zip(step);
+        moved
+            .map(|((one, x), step)| (x + step / longest).clamp(one.range[0], one.range[1]))
+            .collect()
+    }
+}
+
+/// Least and largest variable with which a number lies within a range.
+fn limits(number: f64, power: f64, is_log: bool, [least, most]: [f64; 2]) -> [f64; 2] {
+    if !is_log {
+        return [least - number, most - number];
+    }
+    let log = |end: f64| ((end / number).max(0.0).ln() / power).clamp(-MOST_LOG, MOST_LOG);
+    if number < 0.0 {
+        [-MOST_LOG, log(least)]
+    } else {
+        [log(least), log(most)]
+    }
+}
+
+fn label(field: &Field, place: usize) -> String {
+    match field.kind {
+        Kind::Numbers(labels) => format!("{}.{}", field.name, labels[place]),
+        Kind::Rgb => format!("{}.{}", field.name, ["r", "g", "b"][place]),
+        Kind::Number | Kind::Word(_) => field.name.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hairis_variants::ModelId;
+
+    fn names(names: &[&str]) -> Vec<String> {
+        names.iter().map(|name| (*name).to_owned()).collect()
+    }
+
+    #[test]
+    fn numbers_that_belong_together_have_one_factor() {
+        let start = ModelId::Gaussian.measured();
+        let variables = Variables::new(&start, &[], &[]);
+        assert_eq!(variables.len(), 5, "shifts, widths and three channels");
+        let x = [0.5_f64.ln(), 2.0_f64.ln(), 0.0, 0.0, 3.0_f64.ln()];
+        let values = variables.values(&x);
+        for (field, factors) in [
+            ("alpha", &[0.5; 3][..]),
+            ("beta", &[2.0; 3]),
+            ("gamma_tt", &[2.0]),
+            ("i_r", &[1.0; 3]),
+            ("i_tt", &[1.0, 1.0, 3.0]),
+            ("i_trt", &[1.0, 1.0, 9.0]),
+            ("i_g", &[1.0]),
+        ] {
+            let pairs = values.numbers(field).iter().zip(start.numbers(field));
+            for ((found, start), factor) in pairs.zip(factors) {
+                assert!(
+                    (found / start / factor - 1.0).abs() < 1e-6,
+                    "{field}: {found} of {start}"
+                );
+            }
+        }
+        let free = Variables::new(
+            &start,
+            &names(&["beta", "gamma_g"]),
+            &names(&["alpha", "i_g"]),
+        );
+        let expected = ["alpha.R", "alpha.TT", "alpha.TRT", "gamma_tt"];
+        assert_eq!(free.names()[..4], expected);
+        assert_eq!(free.len(), 3 + 1 + 3 + 1);
+    }
+
+    #[test]
+    fn variables_keep_numbers_in_their_ranges() {
+        for id in ModelId::defaults_of_names() {
+            let fields: Vec<&str> = id.fields().iter().map(|field| field.name).collect();
+            for (_, start) in id.presets() {
+                for free in [Vec::new(), names(&fields)] {
+                    let variables = Variables::new(&start, &[], &free);
+                    for far in [-1e9, 1e9] {
+                        let mut x = vec![0.0; variables.len()];
+                        for _ in 0..200 {
+                            x = variables.after(&x, &vec![far; x.len()]);
+                        }
+                        assert!(id.material(&variables.values(&x)).is_ok(), "{far}");
+                        assert!(
+                            variables
+                                .numbers(&x)
+                                .iter()
+                                .all(|number| number.is_finite())
+                        );
+                    }
+                    let same = variables.values(&vec![0.0; variables.len()]);
+                    let numbers = variables.numbers(&vec![0.0; variables.len()]);
+                    assert_eq!(numbers.len(), variables.names().len());
+                    if free.is_empty() {
+                        for field in id.fields() {
+                            assert_eq!(same.numbers(field.name), start.numbers(field.name));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
