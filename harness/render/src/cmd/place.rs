@@ -1,4 +1,4 @@
-//! What the flags of a scene ask for: hair, head, light and camera.
+//! Scene of the flags: hair, head, light and camera.
 
 use crate::args::{Looks, Place};
 use crate::formats::{self, Follow, Import, Imported, import, import_head};
