@@ -11,7 +11,7 @@
 //!
 //! The sphere of each view is integrated by [`Points`]: half of them are drawn by the first model's sampler and half uniformly, and
 //! weighed by the density of the mixture. L-BFGS-B minimises, with the derivatives of [`hairis_gradients`], within the ranges of
-//! the fields, from several [starts]. Distances are measured at other [`Points`], of which the optimiser knows nothing. The result
+//! the fields, from several starts. Distances are measured at other [`Points`], of which the optimiser knows nothing. The result
 //! is the nearest, by the true norm, of all ends, starts and [`rules`]: it is never further away than any of them.
 
 mod blur;
