@@ -172,7 +172,19 @@ def refits():
     return record, ["", "looks", "start", "best factor on the widths", "fitted", "worst", "error, at most"], body
 
 
-TABLES = {"conserving": conserving, "gradients": gradients, "hand": hand, "hits": hits, "refits": refits, "speed": speed}
+def pictures():
+    """Numbers of the presets that fits found in pictures: distance from the truth, mean over the seeds with its standard error."""
+    record = Record("pictures.csv")
+    ends = {}
+    for row in record.rows:
+        ends.setdefault((row["preset"], row["number"]), []).append(100 * float(row["end"]))
+    words = {"alpha.R": "shifts", "beta.R": "widths", "i_tt.r": "red", "i_tt.g": "green", "i_tt.b": "blue"}
+    cell = lambda all: f"{statistics.mean(all):+.1f}% ± {statistics.stdev(all) / len(all) ** 0.5:.1f}%"
+    rows = [[preset, *(cell(ends[preset, number]) for number in words)] for preset in dict.fromkeys(preset for preset, _ in ends)]
+    return record, ["", *words.values()], rows
+
+
+TABLES = {"conserving": conserving, "gradients": gradients, "hand": hand, "hits": hits, "pictures": pictures, "refits": refits, "speed": speed}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 

@@ -17,12 +17,12 @@ fn every_contender_is_timed_and_right() {
     .expect("hair within range");
     // Slices take part where a shading point is given: evaluation and sampling, short ones and packets just written unless
     // all directions are in the tails. Eight lanes at one shading point take part where it has several samples, slices of
-    // hits where it has one.
+    // hits where it has one; with `Conserving` as well, of the two models that do not conserve energy by their parameters.
     let levels = Level::available().count();
     let models = ModelId::defaults_of_names().count();
     assert_eq!(
         report.rows.len(),
-        models * (TimedOp::ALL.len() * (3 + levels) + 12 * levels),
+        models * (TimedOp::ALL.len() * (3 + levels) + 13 * levels) + 2 * 3 * levels,
         "a row is missing"
     );
     assert!(last >= 1.0, "progress ended at {last}");

@@ -312,7 +312,7 @@ fn write_record(rows: &[String]) {
     );
     let machine = hairis_instruments::machine!();
     let text = format!(
-        "# {}\n# fits of 96 samples to one picture per preset of 256 x 256 pixels and 128 samples\n\
+        "# CPU: any\n# {}\n# fits of 96 samples to one picture per preset of 256 x 256 pixels and 128 samples\n\
          # start, end: difference from the truth before and after, relative; error: the standard error that the fit states\n\
          preset,seed,number,start,end,error\n{}\n",
         machine.summary(),
