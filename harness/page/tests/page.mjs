@@ -9,9 +9,12 @@ import { basename, extname, join } from 'node:path';
 import { exr, radiance } from './maps.mjs';
 
 const [folder, hairis, executablePath] = process.argv.slice(2);
+// Times are bounds for an idle machine, and are printed beside what was measured. A check fails at four times as much: machines of CI
+// may be busy, or run at half their speed.
 const MOST_BYTES = 250_000,
   MOST_MAP_MS = 16,
-  MOST_PAINT_MS = 300;
+  MOST_PAINT_MS = 300,
+  BUSY = 4;
 let failures = 0;
 
 function check(what, isTrue, detail = '') {
@@ -103,15 +106,15 @@ async function times() {
   }
   const paint = median(paints);
   // Other programs on the machine take their share of most runs: the quietest decides, the median is printed.
-  check('the first paint is fast', Math.min(...paints) <= MOST_PAINT_MS, `${paint} ms`);
-  console.log(`first paint: ${paint.toFixed(0)} ms of at most ${MOST_PAINT_MS}, median of ${paints.length}`);
+  check('the first paint is fast', Math.min(...paints) <= BUSY * MOST_PAINT_MS, `${paint} ms`);
+  console.log(`first paint: ${paint.toFixed(0)} ms of at most ${MOST_PAINT_MS} on an idle machine, median of ${paints.length}`);
   const page = await open();
   for (const model of await page.evaluate(() => hairis.kernel.models.map(({ name }) => name))) {
     await page.getByLabel('A', { exact: true }).selectOption(model);
     const times = await page.evaluate(() => Array.from({ length: 61 }, () => hairis.timeMap(0)));
     const ms = median(times);
-    check('a map is fast', Math.min(...times) <= MOST_MAP_MS, `${model}: ${ms} ms`);
-    console.log(`map of ${model}, 512 x 256: ${ms.toFixed(1)} ms of at most ${MOST_MAP_MS}, median of ${times.length}`);
+    check('a map is fast', Math.min(...times) <= BUSY * MOST_MAP_MS, `${model}: ${ms} ms`);
+    console.log(`map of ${model}, 512 x 256: ${ms.toFixed(1)} ms of at most ${MOST_MAP_MS} on an idle machine, median of ${times.length}`);
   }
   await page.context().close();
 }
