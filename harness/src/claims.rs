@@ -96,7 +96,7 @@ pub fn header(seed: u64, quick: bool) -> Header {
 ///
 /// # Errors
 ///
-/// Those of `journal`. The hair of the grid is within the accepted ranges.
+/// If `journal` cannot be read or written. The hair of the grid is within the accepted ranges.
 pub fn run(
     seed: u64,
     quick: bool,

@@ -121,7 +121,7 @@ impl Difference {
     ///
     /// # Errors
     ///
-    /// Those of `journal`. The hair of [`Grid::FULL`] and [`Grid::QUICK`] is accepted.
+    /// If `journal` cannot be read or written. The hair of [`Grid::FULL`] and [`Grid::QUICK`] is accepted.
     pub fn over(
         grid: Grid,
         journal: &Journal,

@@ -100,19 +100,12 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
         });
     } else {
         let rows = joined(&arrays(wo), &inputs.xi);
-        contenders = contenders.levels(HITS, |level| {
-            let material = material.with_level(level);
-            samples(&rows, move |hits, xi, out| {
-                material.sample_hits(hits, xi, out)
-            })
-        });
+        contenders =
+            contenders.levels(HITS, |level| sample_hits(&rows, material.with_level(level)));
         if const { !M::CONSERVES } {
             let material = Material::new(&Conserving(M::MODEL), params);
             contenders = contenders.levels(CONSERVING_HITS, |level| {
-                let material = material.with_level(level);
-                samples(&rows, move |hits, xi, out| {
-                    material.sample_hits(hits, xi, out)
-                })
+                sample_hits(&rows, material.with_level(level))
             });
         }
     }
@@ -120,11 +113,8 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
     Ok((contenders, Truth::of_samples(points, &inputs.xi)))
 }
 
-/// A call that evaluates rows of hits and directions.
-fn evals(
-    rows: &[[f32; 6]],
-    call: impl Fn(HitColumns<'_>, [&[f32]; 3], EvalColumns<'_>) -> Result<(), LengthError> + 'static,
-) -> Box<dyn Pass> {
+/// Evaluations of rows of hits and directions on one material.
+fn eval_hits<M: Model + 'static>(rows: &[[f32; 6]], material: Material<M>) -> Box<dyn Pass> {
     let call = move |[x, y, z, u, v, w]: [&[f32]; 6], [r, g, b, pdf]: [&mut [f32]; 4]| {
         let (wo, out) = (
             [x, y, z],
@@ -133,13 +123,13 @@ fn evals(
                 pdf: Some(pdf),
             },
         );
-        call(HitColumns { wo, h: None }, [u, v, w], out)
+        material.eval_hits(HitColumns { wo, h: None }, [u, v, w], out)
     };
     Box::new(Slices::new(TIMED_DIRECTIONS, rows, call))
 }
 
 /// A call that samples rows of hits and uniform numbers.
-fn samples(
+fn sample_rows(
     rows: &[[f32; 6]],
     call: impl Fn(HitColumns<'_>, [&[f32]; 3], SampleColumns<'_>) -> Result<(), LengthError> + 'static,
 ) -> Box<dyn Pass> {
@@ -160,10 +150,20 @@ fn samples(
     Box::new(Slices::new(TIMED_DIRECTIONS, rows, call))
 }
 
+/// Samples of rows of hits on one material.
+fn sample_hits<M: Model + 'static>(rows: &[[f32; 6]], material: Material<M>) -> Box<dyn Pass> {
+    sample_rows(rows, move |hits, xi, out| {
+        material.sample_hits(hits, xi, out)
+    })
+}
+
 /// Samples of rows of hits on eight materials by turns.
-fn table<M: Model + 'static>(rows: &[[f32; 6]], materials: [Material<M>; 8]) -> Box<dyn Pass> {
+fn sample_table<M: Model + 'static>(
+    rows: &[[f32; 6]],
+    materials: [Material<M>; 8],
+) -> Box<dyn Pass> {
     let index: Vec<u32> = (0..8).cycle().take(rows.len()).collect();
-    samples(rows, move |hits, xi, out| {
+    sample_rows(rows, move |hits, xi, out| {
         let table = MaterialTable {
             materials: &materials,
             index: &index,
@@ -210,19 +210,11 @@ pub(super) fn eval<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
         let material = material.with_level(level);
         task(&eights, move |(wo, wi)| material.prepare8(wo).eval_pdf8(wi))
     })
-    .levels(HITS, |level| {
-        let material = material.with_level(level);
-        evals(&rows, move |hits, wi, out| {
-            material.eval_hits(hits, wi, out)
-        })
-    });
+    .levels(HITS, |level| eval_hits(&rows, material.with_level(level)));
     if const { !M::CONSERVES } {
         let material = Material::new(&Conserving(M::MODEL), params);
         contenders = contenders.levels(CONSERVING_HITS, |level| {
-            let material = material.with_level(level);
-            evals(&rows, move |hits, wi, out| {
-                material.eval_hits(hits, wi, out)
-            })
+            eval_hits(&rows, material.with_level(level))
         });
     }
     Ok((
@@ -279,7 +271,7 @@ pub(super) fn mixed<M: Formulas>(inputs: &TimedInputs<M::Params>, pack_each: boo
     });
     if !pack_each {
         contenders = contenders.levels(HITS, |level| {
-            table(&rows, materials.map(|material| material.with_level(level)))
+            sample_table(&rows, materials.map(|material| material.with_level(level)))
         });
         if const { !M::CONSERVES } {
             let materials = inputs
@@ -287,7 +279,7 @@ pub(super) fn mixed<M: Formulas>(inputs: &TimedInputs<M::Params>, pack_each: boo
                 .each_ref()
                 .map(|params| Material::new(&Conserving(M::MODEL), params));
             contenders = contenders.levels(CONSERVING_HITS, |level| {
-                table(&rows, materials.map(|material| material.with_level(level)))
+                sample_table(&rows, materials.map(|material| material.with_level(level)))
             });
         }
     }

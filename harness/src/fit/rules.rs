@@ -24,7 +24,7 @@ pub fn first_start(from: &Look, to: ModelId) -> Values {
 ///
 /// # Errors
 ///
-/// Those of `distance`.
+/// If `distance` fails.
 pub fn rules<E>(
     from: &Look,
     to: ModelId,

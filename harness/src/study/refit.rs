@@ -32,7 +32,7 @@ impl Study {
     ///
     /// # Errors
     ///
-    /// Those of `journal`.
+    /// If `journal` cannot be read or written.
     pub fn refit(
         &mut self,
         difference: &Difference,
