@@ -220,7 +220,9 @@ impl<'a, 'b> Call<'a, 'b> {
             return;
         }
         for (place, row) in places.iter().zip(&rows[RESULTS..]) {
-            write(*row, self.each[*place].get_mut(at..).unwrap_or_default());
+            if let Some(column) = self.each.get_mut(*place) {
+                write(*row, column.get_mut(at..).unwrap_or_default());
+            }
         }
     }
 }

@@ -64,10 +64,19 @@ impl Upper for f32 {
     }
 }
 
+/// Numbers of one packet, and the sums of a block. The caller of the dispatched function makes them: there, clearing or copying them
+/// would be calls.
+struct Memory<const N: usize, const R: usize> {
+    material: [f32; N],
+    input: [f32x8; INPUTS],
+    out: [f32x8; R],
+    sums: [f32x8; N],
+}
+
 /// Slices of hits on a material, of which each number is at its place.
 struct Hits<'c, 'a, 'b, G, const N: usize, const R: usize> {
     call: &'c mut Call<'a, 'b>,
-    material: [f32; N],
+    memory: &'c mut Memory<N, R>,
     places: &'static [usize],
     rows: PhantomData<G>,
 }
@@ -81,17 +90,21 @@ impl<G: Rows<N, R>, const N: usize, const R: usize> Kernel for Hits<'_, '_, '_, 
     fn run<L: Lanes<Stored = f32x8>>(self) {
         let Self {
             call,
-            material,
+            memory,
             places,
             ..
         } = self;
-        let (mut input, mut out) = ([f32x8::ZERO; INPUTS], [f32x8::ZERO; R]);
-        let mut sums = [f32x8::ZERO; N];
+        let Memory {
+            material,
+            input,
+            out,
+            sums,
+        } = memory;
         let mut packet = 0;
         while packet * 8 < call.len {
-            call.read(packet * 8, &mut input);
-            G::rows::<L>(&material, &input, &mut out);
-            call.write::<N, R>(packet * 8, places, &out);
+            call.read(packet * 8, input);
+            G::rows::<L>(material, input, out);
+            call.write::<N, R>(packet * 8, places, out);
             packet += 1;
             if call.sums.is_empty() {
                 continue;
@@ -100,9 +113,11 @@ impl<G: Rows<N, R>, const N: usize, const R: usize> Kernel for Hits<'_, '_, '_, 
                 *sum = (L::load(sum) + L::load(row)).store();
             }
             if packet % BLOCK == 0 || packet * 8 >= call.len {
-                for (place, lanes) in places.iter().zip(&mut sums) {
-                    for lane in lanes.to_array() {
-                        call.sums[*place] += f64::from(lane);
+                for (place, lanes) in places.iter().zip(&mut *sums) {
+                    if let Some(sum) = call.sums.get_mut(*place) {
+                        for lane in lanes.to_array() {
+                            *sum += f64::from(lane);
+                        }
                     }
                     *lanes = f32x8::ZERO;
                 }
@@ -151,13 +166,18 @@ fn run<G: Rows<N, R>, const N: usize, const R: usize>(
     places: &'static [usize],
     level: Level,
 ) {
-    let mut material = [0.0; N];
-    for (number, place) in material.iter_mut().zip(places) {
+    let mut memory = Memory {
+        material: [0.0; N],
+        input: [f32x8::ZERO; INPUTS],
+        out: [f32x8::ZERO; R],
+        sums: [f32x8::ZERO; N],
+    };
+    for (number, place) in memory.material.iter_mut().zip(places) {
         *number = all[*place];
     }
     level.run(Hits::<G, N, R> {
         call,
-        material,
+        memory: &mut memory,
         places,
         rows: PhantomData,
     });
