@@ -20,7 +20,7 @@ mkdir -p "$out" "$tools"
 rm -f "$out"/*.txt
 cd .ci/nostd
 # Bits do not depend on the optimisation level, either; this one compiles fastest.
-build=(cargo build -q --release --locked --features bits --config 'profile.release.opt-level=1')
+build=(cargo build -q --release --locked --features bits --config 'profile.release.opt-level=0')
 
 cross() { # cross NAME TARGET RUSTFLAGS: builds core and the program; prints the program's path
   unpack rust rustc-web rust-web-src
