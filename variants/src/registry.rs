@@ -18,7 +18,7 @@ use {
     glam::Vec3,
     hairis::model::{DynBsdf, DynBsdf8},
     hairis::simd::Level,
-    hairis::{Bsdf, Bsdf8, Hit, Hit8, LobeMask, Material, Material8},
+    hairis::{Bsdf, Bsdf8, Conserving, Hit, Hit8, LobeMask, Material, Material8},
 };
 
 /// A model of the list: its names.
@@ -157,7 +157,7 @@ macro_rules! models {
 
         #[cfg(feature = "any")]
         impl ModelId {
-            /// The material of these values.
+            /// The material of these values, as it is; [`AnyMaterial::conserving`] limits the light that it returns.
             ///
             /// # Errors
             ///
@@ -176,7 +176,7 @@ macro_rules! models {
             pub fn material(self, values: &Values) -> Result<AnyMaterial, ParamError> {
                 Ok(match self {
                     $(Self::$variant => {
-                        AnyMaterial::$variant(Material::new(&<$model>::MODEL, &Parameters::from_values(values)?))
+                        AnyMaterial::from(Material::new(&<$model>::MODEL, &Parameters::from_values(values)?))
                     }),*
                 })
             }

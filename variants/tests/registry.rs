@@ -6,7 +6,7 @@ use glam::Vec3;
 use hairis::columns::EvalColumns;
 use hairis::params::Rule;
 use hairis::simd::Level;
-use hairis::{HairParams, Hit, Lobe, LobeMask, Material, Material8, ParamError};
+use hairis::{Conserving, HairParams, Hit, Lobe, LobeMask, Material, Material8, ParamError};
 use hairis_variants::{
     AnyMaterial8, ChiangDesc, ChiangParams, Field, KajiyaKayParams, Kind, ModelId, Parameters,
     Registered, Visitor,
@@ -211,6 +211,24 @@ impl Visitor for Compare {
             &eight.lane(3).eval_pdf(wi[3]),
         );
         same(&any[1].conserving_scale(), &materials[1].conserving_scale());
+
+        let conserving = presets.map(|params| Material::new(&Conserving(M::MODEL), &params));
+        let any = any.map(|one| one.conserving());
+        for (one, chosen) in conserving.iter().zip(&any) {
+            same(&chosen.integrates(), &one.integrates());
+            let (one, chosen) = (one.prepare(hit), chosen.prepare(hit));
+            same(&chosen.eval_pdf(wi[0]), &one.eval_pdf(wi[0]));
+            same(&chosen.albedo(), &one.albedo());
+        }
+        let eight = Material8::pack(conserving.each_ref()).prepare8(&packet(&wo));
+        let chosen = AnyMaterial8::pack(any.each_ref())
+            .expect("of one model")
+            .prepare8(&packet(&wo));
+        same(
+            &chosen.eval_pdf8(&packet(&wi)),
+            &eight.eval_pdf8(&packet(&wi)),
+        );
+        same(&chosen.albedo8(), &eight.albedo8());
     }
 }
 

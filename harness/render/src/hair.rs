@@ -1,6 +1,6 @@
 //! Hair by name: model, sampler and preset.
 
-use crate::material::{Hair, Sampling, Scale};
+use crate::material::{Hair, Sampling};
 use crate::transport::{Integrator, Settings};
 use core::fmt::Write as _;
 use hairis_instruments::error::Error;
@@ -146,12 +146,12 @@ impl Choice {
     /// If a value is out of its range.
     pub fn hair(&self, energy: Energy) -> Result<Hair, Error> {
         let material = self.id.material(&self.values)?;
-        let scale = match energy {
-            Energy::Raw => Scale::Factor(1.0),
-            Energy::Scaled => Scale::Factor(material.conserving_scale()),
-            Energy::PerWo => Scale::PerWo,
+        let (material, factor) = match energy {
+            Energy::Raw => (material, 1.0),
+            Energy::Scaled => (material, material.conserving_scale()),
+            Energy::PerWo => (material.conserving(), 1.0),
         };
-        Ok(Hair::Model(material, self.sampling, scale))
+        Ok(Hair::Model(material, self.sampling, factor))
     }
 
     /// Everything that scattering depends on, in one line, but for the name.

@@ -21,29 +21,10 @@ pub enum Sampling {
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one per scene")]
 pub enum Hair {
-    /// A model of the registry.
-    Model(AnyMaterial, Sampling, Scale),
+    /// A model of the registry, and one factor on all that it scatters: 1, but for [`Energy::Scaled`](crate::hair::Energy::Scaled).
+    Model(AnyMaterial, Sampling, f32),
     /// Scatters equally into all directions and absorbs nothing: `S cos theta_i = 1 / (4 pi)`. For tests of transport.
     Isotropic,
-}
-
-/// Treatment of the energy that a model scatters: see [`Energy`](crate::hair::Energy).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Scale {
-    /// One factor on everything.
-    Factor(f32),
-    /// A factor per `wo` and channel, which keeps the albedo at most 1.
-    PerWo,
-}
-
-impl Scale {
-    /// The factor that is left once a hit is prepared.
-    fn factor(self) -> f32 {
-        match self {
-            Self::Factor(factor) => factor,
-            Self::PerWo => 1.0,
-        }
-    }
 }
 
 /// Eight hits, or one hit for eight directions.
@@ -66,14 +47,8 @@ impl Hair {
     #[must_use]
     pub fn prepare8(&self, hits: &Hit8) -> Prepared {
         Prepared(match self {
-            Self::Model(material, sampling, scale) => {
-                let points = material.prepare8(hits);
-                let points = if *scale == Scale::PerWo {
-                    points.conserving()
-                } else {
-                    points
-                };
-                Some((Points::Each(points), *sampling, scale.factor()))
+            Self::Model(material, sampling, factor) => {
+                Some((Points::Each(material.prepare8(hits)), *sampling, *factor))
             }
             Self::Isotropic => None,
         })
@@ -84,11 +59,9 @@ impl Hair {
     #[must_use]
     pub fn prepare(&self, hit: Hit) -> Prepared {
         Prepared(match self {
-            Self::Model(material, sampling, scale) => Some((
-                Points::One(point(material, hit, *scale)),
-                *sampling,
-                scale.factor(),
-            )),
+            Self::Model(material, sampling, factor) => {
+                Some((Points::One(material.prepare(hit)), *sampling, *factor))
+            }
             Self::Isotropic => None,
         })
     }
@@ -96,12 +69,12 @@ impl Hair {
     /// Directional albedo at an inclination of `wo` in rad and an offset `h`.
     #[must_use]
     pub fn albedo(&self, theta_o: f32, h: f32) -> [f32; 3] {
-        let Self::Model(material, _, scale) = self else {
+        let Self::Model(material, _, factor) = self else {
             return [1.0; 3];
         };
         let hit = Hit::new(Vec3::new(theta_o.sin(), theta_o.cos(), 0.0), h);
-        let lobes = point(material, hit, *scale).albedo().0;
-        core::array::from_fn(|c| lobes.iter().map(|lobe| lobe[c]).sum::<f32>() * scale.factor())
+        let lobes = material.prepare(hit).albedo().0;
+        core::array::from_fn(|c| lobes.iter().map(|lobe| lobe[c]).sum::<f32>() * factor)
     }
 
     /// Largest mean albedo of a channel, and largest of all.
@@ -130,16 +103,6 @@ impl Hair {
             }
         }
         [sum.into_iter().fold(0.0, f32::max) / weights, worst]
-    }
-}
-
-/// One hit.
-fn point(material: &AnyMaterial, hit: Hit, scale: Scale) -> AnyBsdf {
-    let point = material.prepare(hit);
-    if scale == Scale::PerWo {
-        point.conserving()
-    } else {
-        point
     }
 }
 

@@ -5,7 +5,7 @@ use glam::Vec3;
 use hairis_render::camera::Camera;
 use hairis_render::geometry::Strands;
 use hairis_render::lights::{Rectangle, RectangleSampling};
-use hairis_render::material::{Hair, Sampling, Scale};
+use hairis_render::material::{Hair, Sampling};
 use hairis_render::numbers::Sequence;
 use hairis_render::scene::Scene;
 use hairis_render::scenes::Name;
@@ -225,11 +225,7 @@ fn at_the_highlight(alpha: f32) -> Scene {
         .expect("listed")
         .1
         .with("alpha", &[alpha; 3]);
-    let hair = Hair::Model(
-        id.material(&values).expect("in range"),
-        Sampling::Own,
-        Scale::Factor(1.0),
-    );
+    let hair = Hair::Model(id.material(&values).expect("in range"), Sampling::Own, 1.0);
     let mut one = scene(Name::AreaSoft, hair, 400, 16);
     one.camera = Camera::new(Vec3::new(0.0, 60.0, 80.0), Vec3::NEG_Y, 3.0, [16, 16]);
     let (sin, cos) = 0.2_f32.sin_cos();

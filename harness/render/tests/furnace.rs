@@ -6,7 +6,7 @@ use hairis_instruments::stats::Moments;
 use hairis_render::camera::Camera;
 use hairis_render::film::Crop;
 use hairis_render::hair::{Choice, Energy, default_sampler, samplers};
-use hairis_render::material::{Hair, Sampling, Scale};
+use hairis_render::material::{Hair, Sampling};
 use hairis_render::numbers::Sequence;
 use hairis_render::scene::Met;
 use hairis_render::scenes::Name;
@@ -208,7 +208,7 @@ fn clear(select: &str) -> Hair {
     let id = ModelId::find("chiang", Some(select)).expect("listed");
     let values = id.defaults().with("sigma_a", &[0.0; 3]);
     let material = id.material(&values).expect("in range");
-    Hair::Model(material, Sampling::Own, Scale::Factor(1.0))
+    Hair::Model(material, Sampling::Own, 1.0)
 }
 
 #[test]

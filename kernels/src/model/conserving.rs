@@ -2,7 +2,7 @@
 
 use crate::model::{Eval, Hit, LobeEval, Model, SampleLanes};
 use crate::simd::{Broadcast, Kernel, LaneStruct, Lanes, Path, Scalar, Vec3x};
-use crate::{Bsdf, Bsdf8, LobeMask, Material, PerLobe};
+use crate::{Bsdf, Bsdf8, LobeMask, Material, Material8, PerLobe};
 use wide::f32x8;
 
 impl<M: Model> Bsdf<M> {
@@ -67,6 +67,18 @@ impl<M: Model> Material<Conserving<M>> {
         M::unfit::<f32, f32>(&self.constants.fit) > 0.0
     }
 
+    /// The material with energy conservation, whether it has it already or is [`raw`](Self::raw): makes the fit anew.
+    #[inline]
+    #[must_use]
+    pub fn conserving(&self) -> Self {
+        let inner = self.constants.inner;
+        let fit = M::fit(&inner);
+        Self {
+            constants: ConservingMaterial { inner, fit },
+            level: self.level,
+        }
+    }
+
     /// The material without energy conservation, as [`from`](Self::from) makes it of a [`Material<M>`].
     #[inline]
     #[must_use]
@@ -80,20 +92,41 @@ impl<M: Model> Material<Conserving<M>> {
 
 /// The bits of a raw material with the type of one that conserves energy: for hosts that choose at run time, as a second type would
 /// double their code. Constants that change nothing are read all the same.
-impl<M: Model> From<Material<M>> for Material<Conserving<M>> {
-    #[inline]
-    fn from(raw: Material<M>) -> Self {
-        let constants = ConservingMaterial {
-            inner: raw.constants,
-            // An albedo of 0 everywhere.
-            fit: LaneStruct::make(&Path::Root, &mut |_| 0.0),
-        };
-        Self {
-            constants,
-            level: raw.level,
+macro_rules! from_raw_material {
+    ($($Handle:ident)*) => { $(
+        impl<M: Model> From<$Handle<M>> for $Handle<Conserving<M>> {
+            #[inline]
+            fn from(raw: $Handle<M>) -> Self {
+                let constants = ConservingMaterial {
+                    inner: raw.constants,
+                    // An albedo of 0 everywhere.
+                    fit: LaneStruct::make(&Path::Root, &mut |_| 0.0.into()),
+                };
+                Self {
+                    constants,
+                    level: raw.level,
+                }
+            }
         }
-    }
+    )* };
 }
+from_raw_material! { Material Material8 }
+
+/// The BSDF with the type of one whose material conserves energy: both have the same constants.
+macro_rules! from_raw_bsdf {
+    ($($Handle:ident)*) => { $(
+        impl<M: Model> From<$Handle<M>> for $Handle<Conserving<M>> {
+            #[inline]
+            fn from(raw: $Handle<M>) -> Self {
+                Self {
+                    prepared: raw.prepared,
+                    level: raw.level,
+                }
+            }
+        }
+    )* };
+}
+from_raw_bsdf! { Bsdf Bsdf8 }
 
 /// A model with each channel of every shading point scaled so that its albedo is at most 1, as part of `prepare` and nothing
 /// later. Slices of hits, eight lanes and samplers are those of the model.

@@ -1,7 +1,8 @@
 //! Public handles of a model that is chosen at run time.
 //!
 //! An enum per handle keeps the handle as plain data; its calls are those of the object-safe traits of `hairis::model`, to
-//! which it dereferences. Each model is compiled once, here, and the choice costs one jump.
+//! which it dereferences. Each model is compiled once, here, and the choice costs one jump. Handles have the types of [`Conserving`],
+//! whether they conserve energy or not, because a second type would be compiled as well.
 
 /// Calls a method of the handle of any model; last, the enum that its result goes into.
 macro_rules! each {
@@ -27,16 +28,25 @@ macro_rules! handle {
         pub enum $any {
             $(
                 #[allow(missing_docs, reason = "named as the model")]
-                $variant($handle<$model>)
+                $variant($handle<Conserving<$model>>)
             ),*
         }
 
-        $(impl From<$handle<$model>> for $any {
+        $(
+        impl From<$handle<$model>> for $any {
             #[inline]
             fn from(handle: $handle<$model>) -> Self {
+                Self::$variant(handle.into())
+            }
+        }
+
+        impl From<$handle<Conserving<$model>>> for $any {
+            #[inline]
+            fn from(handle: $handle<Conserving<$model>>) -> Self {
                 Self::$variant(handle)
             }
-        })*
+        }
+        )*
 
         impl $any {
             /// The model.
@@ -99,7 +109,8 @@ macro_rules! restricted {
                 self
             }
 
-            /// Limits the scattered light to the light that arrives: see [`Conserving`](hairis::Conserving).
+            /// Limits the scattered light to the light that arrives, by integrals of the lobes: see [`Bsdf::conserving`]. Of a
+            /// material, [`AnyMaterial::conserving`] does it for next to nothing per hit.
             #[inline]
             #[must_use]
             pub fn conserving(mut self) -> Self {
@@ -168,6 +179,31 @@ macro_rules! handles {
             #[inline(never)]
             fn prepare_hits(&self, hits: &Hit8) -> AnyBsdf8 {
                 any::each!($models self, material => material.prepare8(hits), AnyBsdf8)
+            }
+
+            /// The material with energy conservation: see [`Conserving`]. It takes as long to make as some hundred hits.
+            ///
+            /// ```
+            /// use hairis::PerLobe;
+            /// use hairis_variants::ModelId;
+            /// let (_, white) = ModelId::Gaussian.presets().find(|(name, _)| *name == "white").expect("a preset");
+            /// let grazing = glam::Vec3::new(0.99, 0.14, 0.0).normalize();
+            /// let raw = ModelId::Gaussian.material(&white)?;
+            /// let PerLobe(lobes) = raw.conserving().prepare(grazing).albedo();
+            /// assert!(lobes.iter().map(|lobe| lobe[0]).sum::<f32>() < 1.001);
+            /// # Ok::<(), hairis::ParamError>(())
+            /// ```
+            #[inline(never)]
+            #[must_use]
+            pub fn conserving(&self) -> Self {
+                any::each!($models self, material => material.conserving(), Self)
+            }
+
+            /// Whether each hit integrates the lobes: see [`Material::integrates`].
+            #[inline(never)]
+            #[must_use]
+            pub fn integrates(&self) -> bool {
+                any::each!($models self, material => material.integrates())
             }
 
             /// The largest directional albedo: see [`Material::max_albedo`].
