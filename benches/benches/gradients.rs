@@ -2,15 +2,13 @@
 //!
 //! `cargo bench -p hairis-benches --bench gradients` prints a record: with and without the density.
 
-mod turns;
-
 use core::array::from_fn;
 use core::hint::black_box;
 use hairis::columns::{EvalColumns, HitColumns};
 use hairis::simd::Level;
 use hairis::{Gaussian, Matched, Material, Published};
-use hairis_benches::cpu;
 use hairis_benches::inputs::{Column, DIRECTIONS, Inputs, arrays};
+use hairis_benches::{cpu, turns};
 use hairis_gradients::{Differentiable, GradColumns, Gradients, Weights};
 use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Parameters};
 

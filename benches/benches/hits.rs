@@ -3,8 +3,6 @@
 //!
 //! `cargo bench -p hairis-benches --bench hits` prints a record.
 
-mod turns;
-
 use core::array::from_fn;
 use core::hint::black_box;
 use glam::Vec3;
@@ -12,8 +10,8 @@ use hairis::columns::{EvalColumns, HitColumns, MaterialTable, SampleColumns, in_
 use hairis::model::Model;
 use hairis::simd::Level;
 use hairis::{Conserving, Gaussian, HairParams, Matched, Material, Material8, Published};
-use hairis_benches::cpu;
 use hairis_benches::inputs::{Column, DIRECTIONS, Inputs, arrays, packets};
+use hairis_benches::{cpu, turns};
 use hairis_variants::Cauchy;
 
 fn main() {

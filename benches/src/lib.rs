@@ -14,6 +14,7 @@ pub mod math;
 pub mod platform;
 pub mod resample;
 pub mod task;
+pub mod turns;
 
 pub use entries::{Name, Op, Visitor};
 pub use task::Task;

@@ -4,7 +4,8 @@ use std::env;
 use std::time::Instant;
 
 /// Turns of a pair; one in a test, as Cargo runs benches as tests, too.
-pub(crate) fn turns() -> usize {
+#[must_use]
+pub fn turns() -> usize {
     const TURNS: usize = 301;
     if env::args().any(|word| word == "--bench") {
         TURNS
@@ -26,12 +27,7 @@ fn median(times: &mut [f64]) -> f64 {
 }
 
 /// Times two calls in turns. Returns the medians of ours, of the base and of their ratio; times in ns, per each of so many hits.
-pub(crate) fn pair(
-    turns: usize,
-    hits: usize,
-    mut ours: impl FnMut(),
-    mut base: impl FnMut(),
-) -> [f64; 3] {
+pub fn pair(turns: usize, hits: usize, mut ours: impl FnMut(), mut base: impl FnMut()) -> [f64; 3] {
     let [mut a, mut b, mut ratio] = [vec![], vec![], vec![]];
     for turn in 0..=turns {
         let (first, second);
