@@ -1,7 +1,8 @@
 #!/bin/bash
 # Promise: C, C++, Python and Mitsuba are hosts of the kernels. The C library answers as Rust does, to the bit, for every model and entry
-# point; refuses without writing; reads and writes nothing beyond its columns; exports its header's names alone; links by CMake, by
-# pkg-config and beside another Rust library. The wheel passes its tests. Mitsuba's own chi-square test accepts every sampler.
+# point; refuses without writing; reads and writes nothing beyond its columns, under AddressSanitizer and valgrind; exports its header's
+# names alone; links by CMake, by pkg-config and beside another Rust library. The wheel passes its tests. Mitsuba's own chi-square test
+# accepts every sampler.
 #
 # Needs cargo, gcc, and Debian's packages and PyPI for the rest. Prints the time of each part, and the sizes.
 set -euo pipefail
@@ -32,6 +33,12 @@ CARGO_BUILD_JOBS=1 "$capi/install.sh" "$prefix" > "$work/install.log" 2>&1 &
 libraries=$!
 CARGO_BUILD_JOBS=1 cargo build -q --release --locked --manifest-path .ci/hosts/Cargo.toml --target-dir "$work/answers"
 "$work/answers/release/hairis-hosts" "$work"
+# Every access of the library is checked. The half of it that `few` leaves compiles in half a minute, not optimised, and has no other
+# unsafe code. RUSTC_BOOTSTRAP for this command alone: the sanitizer is no stable option.
+host=$(rustc -vV | sed -n 's/^host: //p')
+CARGO_BUILD_JOBS=1 RUSTC_BOOTSTRAP=1 RUSTFLAGS="$RUSTFLAGS -Zsanitizer=address" cargo rustc -q --locked -p hairis-capi --profile capi \
+  --config 'profile.capi.lto=false' --config 'profile.capi.opt-level=0' --no-default-features --features few --crate-type staticlib \
+  --target "$host" --target-dir "$work/asan"
 (cd variants/python && rm -rf "$work/wheels" &&
   "$work/venv/bin/maturin" build -q --locked --target-dir "$work/wheel" --out "$work/wheels")
 wait $libraries || { cat "$work/install.log"; echo "FAIL install.sh"; exit 1; }
@@ -59,9 +66,27 @@ cp "$work/answers.bin" "$work/wrong.bin"
 printf '\x01' | dd of="$work/wrong.bin" bs=1 seek=$(($(stat -c %s "$work/wrong.bin") - 7)) conv=notrunc status=none
 if "$work/bits" "$work/wrong.bin" > /dev/null 2>&1; then echo "FAIL bits accepts a wrong answer"; exit 1; fi
 
+# What watches memory must report a column that is one number short, in the call that fills it.
+reported() { # reported COMMAND...
+  "$@" > "$work/short.log" 2>&1 && { echo "FAIL a column that is too short is not reported"; exit 1; }
+  grep -q 'AddressSanitizer: heap-buffer-overflow\|Invalid write of size' "$work/short.log" &&
+    grep -q 'hairis_eval_columns' "$work/short.log" || { cat "$work/short.log"; echo "FAIL a short column is reported otherwise"; exit 1; }
+}
+
+part AddressSanitizer
+# Of the library with the feature `few`, which must refuse the five other entries by name: with two presets and three energies each.
+watched=(-fsanitize=address "$work/asan/$host/capi/libhairis_capi.a" -lm)
+build_c "$capi/tests/bits.c" "$work/bits-asan" "${watched[@]}"
+build_c "$capi/tests/refusals.c" "$work/refusals-asan" "${watched[@]}"
+HAIRIS_FEW=1 "$work/bits-asan" "$work/answers.bin" | tee "$work/few.log"
+grep -q '; 30 are not in the library' "$work/few.log" || { echo "FAIL few has other models"; exit 1; }
+"$work/refusals-asan"
+reported "$work/bits-asan" "$work/answers.bin" short
+
 part valgrind
 valgrind -q --error-exitcode=9 "$work/bits" "$work/answers.bin"
 valgrind -q --error-exitcode=9 "$work/refusals"
+reported valgrind -q --error-exitcode=9 --exit-on-first-error=yes "$work/bits" "$work/answers.bin" short
 
 part 'C++, CMake, pkg-config'
 cmake -S "$capi/tests" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Release > /dev/null
