@@ -118,6 +118,24 @@ def conserving():
     return record, ["Gaussian", *levels], rows
 
 
+def capi():
+    """Calls of the C library over those of Rust: median ratios of raw and conserving materials."""
+    record = Record("capi.csv")
+    ratios = {}
+    for row in record.rows:
+        ratios.setdefault((row["call"], row["model"].strip(), row["energy"]), []).append(float(row["ratio"]))
+    goals = {"eval_pdf": ".86 to 1.14", "sample": ".86 to 1.14", "eval_columns": ".93 to 1.07", "sample_columns": ".93 to 1.07",
+             "eval_hits": ".93 to 1.07", "sample_hits": ".93 to 1.07", "prepare and eval_pdf over eval_hit": "1.25",
+             "prepare and sample over sample_hit": "1.25", "eval_hits of eight": "1.5", "sample_hits of eight": "1.5",
+             "eval_hits of a table": "1.2", "eval_hits of a sorted table": "1.15"}
+    models = {"gaussian published": "Gaussian", "gaussian matched": "Gaussian, matched", "cauchy matched": "Cauchy, matched",
+              "kajiya-kay": "Kajiya-Kay", "chiang mean": "Chiang"}
+    cell = lambda call, model: ", ".join(f"{statistics.median(ratios[call, model, energy]):.2f}" for energy in ("raw", "conserving"))
+    calls = dict.fromkeys(row["call"] for row in record.rows)
+    rows = [[call, goals[call], *(cell(call, model) for model in models)] for call in calls]
+    return record, ["raw, conserving", "goal", *models.values()], rows
+
+
 def gradients():
     """Derivatives of slices of hits over their values: ns per hit, and the ratio."""
     record = Record("gradients.csv")
@@ -184,7 +202,7 @@ def pictures():
     return record, ["", *words.values()], rows
 
 
-TABLES = {"conserving": conserving, "gradients": gradients, "hand": hand, "hits": hits, "pictures": pictures, "refits": refits, "speed": speed}
+TABLES = {"capi": capi, "conserving": conserving, "gradients": gradients, "hand": hand, "hits": hits, "pictures": pictures, "refits": refits, "speed": speed}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 
