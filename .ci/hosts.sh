@@ -94,10 +94,10 @@ cmake --build "$work/consumer" > /dev/null
 "$work/consumer/shared"
 "$work/consumer/static" > /dev/null
 export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
-for example in furnace.c pbrt_hair.cpp resample.cpp; do
+for example in furnace.c furnace.cpp pbrt_hair.cpp resample.cpp; do
   case $example in *.c) compiler='gcc -std=c11' ;; *) compiler='g++ -std=c++17' ;; esac
   $compiler -O2 -Wall -Wextra -pedantic -Werror "$capi/examples/$example" -o "$work/example" $(pkg-config --cflags --libs hairis) -lm
-  LD_LIBRARY_PATH=$prefix/lib "$work/example" > "$work/example.log" || { cat "$work/example.log"; echo "FAIL $example"; exit 1; }
+  (cd "$work" && LD_LIBRARY_PATH=$prefix/lib ./example > example.log) || { cat "$work/example.log"; echo "FAIL $example"; exit 1; }
   tail -2 "$work/example.log"
 done
 
