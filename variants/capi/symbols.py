@@ -1,22 +1,21 @@
 #!/usr/bin/env python3
-"""What the library is made of: bytes of text by call and by model, from a library that is not stripped.
-
-symbols.py LIBRARY, built by: cargo build --profile capi --config 'profile.capi.strip=false' -p hairis-capi"""
+"""What the library is made of, by call and model, in kB of code: symbols.py PREFIX/lib/libhairis.a, after install.sh PREFIX. The static
+library keeps the names of its functions."""
 import collections
 import re
 import subprocess
 import sys
 
 CALLS = (
-    ("hits that integrate", r"in_packets|Integrate<|kernels::Prepare<|kernels::EvalPdf<|kernels::SampleWi<|Bsdf8"),
     ("hits, evaluate", r"HitEvals"),
     ("hits, sample", r"HitSamples"),
-    ("columns, weigh", r"Weighs|weigh_columns"),
+    ("hits, one lane and groups", r"hits::run"),
     ("columns, evaluate", r"columns::Eval|hairis_eval_columns"),
     ("columns, sample", r"columns::Sample|hairis_sample_columns"),
-    ("hits, dispatch and portable", r"hits::run"),
+    ("columns, weigh", r"Weighs|weigh_columns"),
     ("one direction", r"points::"),
-    ("set-up", r"setup::|models::|text::|from_values|registry|parameters|params::"),
+    ("set-up, fit of the albedo", r"prepare8|prepare_integrated|albedo|Integrate<|kernels::Prepare<|conserving"),
+    ("set-up, parameters", r"setup::|models::|text::|artist::|from_values|registry|parameters|params::"),
 )
 MODELS = (
     ("matched, 25 bands", r"Matched<[^>]*, 25>"),
@@ -39,7 +38,7 @@ def main() -> None:
     seen = set()
     for line in lines:
         match = re.match(r"(\d+) (\d+) [tTwW] (.*)", line)
-        if match and match[1] not in seen:
+        if match and (int(match[1]) == 0 or match[1] not in seen):
             seen.add(match[1])
             call = first(match[3], CALLS, "std, core and the rest")
             table[call][first(match[3], MODELS, "any model")] += int(match[2])
