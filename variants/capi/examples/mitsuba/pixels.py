@@ -1,6 +1,7 @@
 """The plugin's pixels against the wheel: a straight strand under a directional light, then in a furnace. pixels.py PLUGINS, the folder
-that build.sh wrote; files go to the working directory."""
+that build.sh wrote, whose name must be "plugins"; files go to the working directory."""
 
+import pathlib
 import sys
 
 import hairis
@@ -8,7 +9,8 @@ import mitsuba as mi
 import numpy as np
 
 mi.set_variant("scalar_rgb")
-mi.file_resolver().append(sys.argv[1])
+# Mitsuba looks for plugins/hairis.so.
+mi.file_resolver().append(str(pathlib.Path(sys.argv[1]).resolve().parent))
 T = mi.ScalarTransform4f
 
 # The strand, and a curve far away: Mitsuba 3.9.1 reads past the control points where a ray hits the very end of the last curve.
