@@ -50,8 +50,8 @@ def main():
     gap = np.ones((height, 4, 3))
     both = np.hstack([pictures[0].mean(0), gap, pictures[1].mean(0)])
     mi.util.write_bitmap(picture, np.float32(both), write_async=False, quality=85)
-    # Four standard errors in each channel.
-    return np.all(np.abs(difference) < 4 * error)
+    # One percent and four standard errors: rays leave the axis of a hair in hairis-render, and its surface in Mitsuba.
+    return np.all(np.abs(difference) < 0.01 * mine + 4 * error)
 
 
 sys.exit(0 if main() else 1)
