@@ -142,7 +142,13 @@ impl Report {
             )
         };
         let summary = self.summary.as_ref().map(&mut figure).unwrap_or_default();
-        let verdicts = definitions(&self.verdicts);
+        let mut verdicts = String::new();
+        if !self.verdicts.is_empty() || self.summary.is_some() {
+            verdicts = format!(
+                "<section id=\"verdicts\" class=\"verdicts\">\n{}{summary}</section>\n",
+                definitions(&self.verdicts)
+            );
+        }
         let mut findings: String = self
             .findings
             .iter()
@@ -172,8 +178,7 @@ impl Report {
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n\
              </head>\n<body>\n<header>\n<h1>{title}</h1>\n<p class=\"subtitle\">{subtitle}</p>\n</header>\n<main>\n\
-             <section id=\"verdicts\" class=\"verdicts\">\n{verdicts}{summary}</section>\n\
-             <nav aria-label=\"Contents\">\n<ol>\n{contents}</ol>\n</nav>\n{findings}{sections}</main>\n</body>\n</html>\n"
+             {verdicts}<nav aria-label=\"Contents\">\n<ol>\n{contents}</ol>\n</nav>\n{findings}{sections}</main>\n</body>\n</html>\n"
         )
     }
 
@@ -308,6 +313,18 @@ mod tests {
             html.contains("<code>&lt;img src=x onerror=alert(1)&gt;</code>"),
             "code is set as code"
         );
+    }
+
+    #[test]
+    fn a_page_without_verdicts_has_no_empty_box() {
+        let page = Report {
+            findings: vec!["one".to_owned()],
+            ..Report::default()
+        };
+        let html = page.html();
+        well_formed(&html).expect("the page nests");
+        assert!(!html.contains("id=\"verdicts\""), "{html}");
+        assert!(full("text").html().contains("id=\"verdicts\""));
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! Arguments of calls: slices of one length, which is checked.
 
-use crate::generated::{ARGUMENTS, INPUTS, RESULTS};
+use crate::generated::{GROUP, INPUTS, OUTPUTS, RESULTS, finite_or_0};
+use core::cell::Cell;
 use core::fmt;
+use core::slice;
 use hairis::columns::{HitColumns, LengthError};
 use hairis::f32x8;
 
@@ -81,7 +83,8 @@ pub struct GradColumns<'a, 'b> {
     /// Each of eight lanes sums 512 hits in single precision, and the sums of lanes are added in double precision, from the
     /// first hit on: the sum depends on whether the level fuses, and on nothing else of the machine.
     pub d_material: Option<&'a mut [f64]>,
-    /// Derivative by each number of the material per hit: as many columns, each with an entry per hit.
+    /// Derivative by each number of the material per hit: as many columns, each with an entry per hit. Eight hits are a call then, which
+    /// takes longer than sums.
     pub d_material_of_hits: Option<&'a mut [&'b mut [f32]]>,
 }
 
@@ -90,7 +93,7 @@ pub struct GradColumns<'a, 'b> {
 pub(crate) struct Call<'a, 'b> {
     pub(crate) len: usize,
     inputs: [&'a [f32]; INPUTS],
-    outputs: [&'a mut [f32]; RESULTS + ARGUMENTS],
+    outputs: [&'a mut [f32]; OUTPUTS],
     pub(crate) sums: &'a mut [f64],
     each: &'a mut [&'b mut [f32]],
 }
@@ -110,7 +113,7 @@ const INPUT_NAMES: [&str; INPUTS] = [
     "weights.pdf",
 ];
 /// Names of the outputs, in order.
-const OUTPUT_NAMES: [&str; RESULTS + ARGUMENTS] = [
+const OUTPUT_NAMES: [&str; OUTPUTS] = [
     "value.r", "value.g", "value.b", "pdf", "d_wo.u", "d_wo.v", "d_wo.w", "d_h", "d_wi.u",
     "d_wi.v", "d_wi.w",
 ];
@@ -183,58 +186,71 @@ impl<'a, 'b> Call<'a, 'b> {
         })
     }
 
-    /// Eight hits from `at` on. Lanes past the last hit repeat it with weights of 0.
-    #[inline(always)]
-    pub(crate) fn read(&self, at: usize, to: &mut [f32x8; INPUTS]) {
-        let weights = RESULTS + 3;
-        for (place, (column, to)) in self.inputs.iter().zip(to).enumerate() {
-            let column = column.get(at..).unwrap_or_default();
-            *to = match column.first_chunk::<8>() {
-                Some(eight) => f32x8::new(*eight),
-                None => {
-                    let fill = if place < weights { column.last() } else { None };
-                    let mut lanes = [fill.copied().unwrap_or(0.0); 8];
-                    for (lane, number) in lanes.iter_mut().zip(column) {
-                        *lane = *number;
-                    }
-                    f32x8::new(lanes)
-                }
-            };
-        }
+    /// Whether derivatives by the material are asked for per hit.
+    pub(crate) fn has_each(&self) -> bool {
+        !self.each.is_empty()
     }
 
-    /// Writes the rows of eight hits from `at` on: results, derivatives by numbers of the material, of which each has its place,
-    /// and derivatives by the hit.
+    /// Calls `run` with packets from hit `at` on, of which there is one, and returns their number: at most `most`, and [`GROUP`]. Fewer
+    /// than eight hits are a packet whose other lanes repeat the last hit with weights of 0.
     #[inline(always)]
-    pub(crate) fn write<const N: usize, const R: usize>(
+    pub(crate) fn packets(
         &mut self,
         at: usize,
-        places: &[usize],
-        rows: &[f32x8; R],
-    ) {
-        for (place, column) in self.outputs.iter_mut().enumerate() {
-            let row = if place < RESULTS { place } else { N + place };
-            write(rows[row], column.get_mut(at..).unwrap_or_default());
-        }
-        if self.each.is_empty() {
-            return;
-        }
-        for (place, row) in places.iter().zip(&rows[RESULTS..]) {
-            if let Some(column) = self.each.get_mut(*place) {
-                write(*row, column.get_mut(at..).unwrap_or_default());
+        most: usize,
+        run: impl FnOnce([&[[f32; 8]]; INPUTS], [&[Cell<[f32; 8]>]; OUTPUTS]),
+    ) -> usize {
+        let full = ((self.len - at) / 8).min(most).min(GROUP);
+        let left_out = ([[0.0; 8]; GROUP], [const { Cell::new([0.0; 8]) }; GROUP]);
+        let mut few = ([[0.0; 8]; INPUTS], [const { Cell::new([0.0; 8]) }; OUTPUTS]);
+        let mut inputs = [&left_out.0[..full]; INPUTS];
+        let mut outputs = [&left_out.1[..full]; OUTPUTS];
+        let weights = RESULTS + 3;
+        if full == 0 {
+            for (place, (column, to)) in self.inputs.iter().zip(&mut few.0).enumerate() {
+                let column = column.get(at..).unwrap_or_default();
+                if place < weights {
+                    to.fill(column.last().copied().unwrap_or(0.0));
+                }
+                to[..column.len()].copy_from_slice(column);
+            }
+            inputs = few.0.each_ref().map(slice::from_ref);
+            outputs = few.1.each_ref().map(slice::from_ref);
+        } else {
+            for (column, to) in self.inputs.iter().zip(&mut inputs) {
+                if let Some(packets) = column.get(at..at + 8 * full) {
+                    *to = packets.as_chunks().0;
+                }
+            }
+            for (column, to) in self.outputs.iter_mut().zip(&mut outputs) {
+                if let Some(packets) = column.get_mut(at..at + 8 * full) {
+                    *to = Cell::from_mut(packets.as_chunks_mut().0).as_slice_of_cells();
+                }
             }
         }
+        run(inputs, outputs);
+        if full == 0 {
+            for (column, from) in self.outputs.iter_mut().zip(&few.1) {
+                let column = column.get_mut(at..).unwrap_or_default();
+                column.copy_from_slice(&from.get()[..column.len()]);
+            }
+        }
+        full.max(1)
     }
-}
 
-/// Writes as many lanes as there is room for.
-#[inline(always)]
-fn write(row: f32x8, to: &mut [f32]) {
-    match to.first_chunk_mut::<8>() {
-        Some(eight) => *eight = row.to_array(),
-        None => {
-            for (number, lane) in to.iter_mut().zip(row.to_array()) {
-                *number = lane;
+    /// Writes derivatives of eight hits from `at` on by numbers of the material, of which each has its place. Derivatives by the hit,
+    /// which are written, become finite.
+    pub(crate) fn finish(&mut self, at: usize, places: &[usize], rows: &[f32x8]) {
+        let eight = at..self.len.min(at + 8);
+        for column in &mut self.outputs[RESULTS..] {
+            for derivative in column.get_mut(eight.clone()).unwrap_or_default() {
+                *derivative = finite_or_0(*derivative);
+            }
+        }
+        for (place, row) in places.iter().zip(rows) {
+            if let Some(column) = self.each.get_mut(*place) {
+                let column = &mut column[eight.clone()];
+                column.copy_from_slice(&row.to_array()[..column.len()]);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Generated derivatives, and which model has which.
 
 use crate::columns::Call;
+use core::cell::Cell;
 use core::marker::PhantomData;
 use hairis::f32x8;
 use hairis::simd::{Kernel, LaneStruct, Lanes, Level, Path};
@@ -14,15 +15,37 @@ pub(crate) const ARGUMENTS: usize = 7;
 /// Numbers that each hit reads: these, and a weight per result.
 pub(crate) const INPUTS: usize = ARGUMENTS + RESULTS;
 
+/// Numbers of a hit that are written: the results, and a derivative per argument.
+pub(crate) const OUTPUTS: usize = RESULTS + ARGUMENTS;
+
 /// Packets whose derivatives are summed in single precision.
 const BLOCK: usize = 64;
+/// Packets of a call of a dispatched function.
+pub(crate) const GROUP: usize = 16;
 
-/// Derivatives that read `N` numbers of a material, by lanes: `R` rows, the results, then a row per number, then one per argument.
-trait Rows<const N: usize, const R: usize> {
+/// A number that all lanes share.
+#[derive(Clone, Copy, Debug)]
+enum Slot {
+    /// A number of a material, by its place.
+    Number(usize),
+    /// The bits of a constant.
+    Constant(u32),
+}
+
+/// Derivatives that read `S` shared numbers and have a sum for each of `N` numbers of a material.
+trait Rows<const S: usize, const N: usize> {
     /// Whether the density is among the results, and not 0.
     const HAS_PDF: bool;
-    /// The rows.
-    fn rows<L: Lanes<Stored = f32x8>>(m: &[f32; N], v: &[f32x8; INPUTS], out: &mut [f32x8; R]);
+    /// The shared numbers: in memory, where instructions read them. Compilers would load constants into registers, one at a time.
+    const SLOTS: &'static [Slot; S];
+    /// Results and derivatives by the hit. Derivatives by the material are added to `sums`, and `finite` stays finite if all derivatives by
+    /// the hit are.
+    fn rows<L: Lanes<Stored = f32x8>>(
+        shared: &[f32x8; S],
+        v: [L; INPUTS],
+        sums: &mut [f32x8; N],
+        finite: &mut f32x8,
+    ) -> [L; OUTPUTS];
 }
 
 mod models {
@@ -33,7 +56,7 @@ mod models {
         unused,
         reason = "generated: one line per operation"
     )]
-    use super::{INPUTS, Rows, upper};
+    use super::{INPUTS, OUTPUTS, Rows, Slot, upper};
     use hairis::f32x8;
     use hairis::simd::Lanes;
     include!(concat!(env!("OUT_DIR"), "/models.rs"));
@@ -64,63 +87,46 @@ impl Upper for f32 {
     }
 }
 
-/// Numbers of one packet, and the sums of a block. The caller of the dispatched function makes them: there, clearing or copying them
-/// would be calls.
-struct Memory<const N: usize, const R: usize> {
-    material: [f32; N],
-    input: [f32x8; INPUTS],
-    out: [f32x8; R],
-    sums: [f32x8; N],
-}
-
-/// Slices of hits on a material, of which each number is at its place.
-struct Hits<'c, 'a, 'b, G, const N: usize, const R: usize> {
-    call: &'c mut Call<'a, 'b>,
-    memory: &'c mut Memory<N, R>,
-    places: &'static [usize],
+/// Full packets of hits.
+struct Hits<'c, G, const S: usize, const N: usize> {
+    shared: &'c [f32x8; S],
+    inputs: [&'c [[f32; 8]]; INPUTS],
+    outputs: [&'c [Cell<[f32; 8]>]; OUTPUTS],
+    sums: &'c mut [f32x8; N],
+    finite: &'c mut f32x8,
     rows: PhantomData<G>,
 }
 
-impl<G: Rows<N, R>, const N: usize, const R: usize> Kernel for Hits<'_, '_, '_, G, N, R> {
+impl<G: Rows<S, N>, const S: usize, const N: usize> Kernel for Hits<'_, G, S, N> {
     type Output = ();
     // Compiling the density once more takes longest.
     const MANY_REGISTERS: bool = !G::HAS_PDF;
 
     #[inline(always)]
     fn run<L: Lanes<Stored = f32x8>>(self) {
-        let Self {
-            call,
-            memory,
-            places,
-            ..
-        } = self;
-        let Memory {
-            material,
-            input,
-            out,
-            sums,
-        } = memory;
-        let mut packet = 0;
-        while packet * 8 < call.len {
-            call.read(packet * 8, input);
-            G::rows::<L>(material, input, out);
-            call.write::<N, R>(packet * 8, places, out);
-            packet += 1;
-            if call.sums.is_empty() {
-                continue;
+        let packets = self.inputs[0].len();
+        let (mut inputs, mut outputs) = ([&[][..]; INPUTS], [&[][..]; OUTPUTS]);
+        for (to, column) in inputs.iter_mut().zip(&self.inputs) {
+            let Some(column) = column.get(..packets) else {
+                return;
+            };
+            *to = column;
+        }
+        for (to, column) in outputs.iter_mut().zip(&self.outputs) {
+            let Some(column) = column.get(..packets) else {
+                return;
+            };
+            *to = column;
+        }
+        for packet in 0..packets {
+            let mut v = [L::splat(0.0); INPUTS];
+            for (to, column) in v.iter_mut().zip(&inputs) {
+                *to = L::load(&f32x8::new(column[packet]));
             }
-            for (sum, row) in sums.iter_mut().zip(&out[RESULTS..]) {
-                *sum = (L::load(sum) + L::load(row)).store();
-            }
-            if packet % BLOCK == 0 || packet * 8 >= call.len {
-                for (place, lanes) in places.iter().zip(&mut *sums) {
-                    if let Some(sum) = call.sums.get_mut(*place) {
-                        for lane in lanes.to_array() {
-                            *sum += f64::from(lane);
-                        }
-                    }
-                    *lanes = f32x8::ZERO;
-                }
+            let out = G::rows::<L>(self.shared, v, self.sums, self.finite);
+            for (column, row) in outputs.iter().zip(&out) {
+                let column: &[Cell<[f32; 8]>] = column;
+                column[packet].set(row.store().to_array());
             }
         }
     }
@@ -158,29 +164,76 @@ pub(crate) mod sealed {
     pub struct Rows<'c, 'a, 'b>(pub(crate) &'c mut Call<'a, 'b>);
 }
 
-/// Runs the derivatives `G`, which read the numbers at these places of all numbers of a material. Compiled once per program.
+/// Runs the derivatives `G`, which have sums for the numbers at these places of all numbers of a material. Compiled once per program.
 #[inline(never)]
-fn run<G: Rows<N, R>, const N: usize, const R: usize>(
+fn run<G: Rows<S, N>, const S: usize, const N: usize>(
     call: &mut Call<'_, '_>,
     all: &[f32],
     places: &'static [usize],
     level: Level,
 ) {
-    let mut memory = Memory {
-        material: [0.0; N],
-        input: [f32x8::ZERO; INPUTS],
-        out: [f32x8::ZERO; R],
-        sums: [f32x8::ZERO; N],
-    };
-    for (number, place) in memory.material.iter_mut().zip(places) {
-        *number = all[*place];
-    }
-    level.run(Hits::<G, N, R> {
-        call,
-        memory: &mut memory,
-        places,
-        rows: PhantomData,
+    let shared = G::SLOTS.map(|slot| {
+        f32x8::splat(match slot {
+            Slot::Number(place) => all[place],
+            Slot::Constant(bits) => f32::from_bits(bits),
+        })
     });
+    let mut sums = [f32x8::ZERO; N];
+    let (mut at, mut alone_until) = (0, if call.has_each() { call.len } else { 0 });
+    while at < call.len {
+        // Derivatives that are not finite count as 0. Few are: packets whose sums are not are computed again, each alone.
+        let is_alone = at < alone_until;
+        let mut rows = if is_alone {
+            // Adding to -0 changes no bit.
+            [f32x8::splat(-0.0); N]
+        } else {
+            sums
+        };
+        let mut finite = f32x8::ZERO;
+        let most = if is_alone { 1 } else { GROUP };
+        let count = call.packets(at, most, |inputs, outputs| {
+            level.run(Hits::<G, S, N> {
+                shared: &shared,
+                inputs,
+                outputs,
+                sums: &mut rows,
+                finite: &mut finite,
+                rows: PhantomData,
+            });
+        });
+        if is_alone {
+            for (sum, row) in sums.iter_mut().zip(&mut rows) {
+                *row = f32x8::new(row.to_array().map(finite_or_0));
+                *sum += *row;
+            }
+            call.finish(at, places, &rows);
+        } else if rows.iter().chain([&finite]).all(is_finite) {
+            sums = rows;
+        } else {
+            alone_until = at + 8 * count;
+            continue;
+        }
+        at += 8 * count;
+        if at % (8 * BLOCK) == 0 || at >= call.len {
+            for (place, lanes) in places.iter().zip(&mut sums) {
+                if let Some(sum) = call.sums.get_mut(*place) {
+                    for lane in lanes.to_array() {
+                        *sum += f64::from(lane);
+                    }
+                }
+                *lanes = f32x8::ZERO;
+            }
+        }
+    }
+}
+
+fn is_finite(lanes: &f32x8) -> bool {
+    lanes.to_array().into_iter().all(f32::is_finite)
+}
+
+/// A derivative, or 0 where that is not finite.
+pub(crate) fn finite_or_0(x: f32) -> f32 {
+    if x.is_finite() { x } else { 0.0 }
 }
 
 /// Work on a model of the list as a type with derivatives: see [`visit`].
@@ -235,9 +288,9 @@ macro_rules! differentiable {
                     }
                 });
                 if const { HAS_PDF } {
-                    run::<ValuePdf, { ValuePdf::N }, { ValuePdf::R }>(call.0, &all, VALUE_PDF, level);
+                    run::<ValuePdf, { ValuePdf::S }, { ValuePdf::N }>(call.0, &all, VALUE_PDF, level);
                 } else {
-                    run::<Value, { Value::N }, { Value::R }>(call.0, &all, VALUE, level);
+                    run::<Value, { Value::S }, { Value::N }>(call.0, &all, VALUE, level);
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Derivatives against central differences of the formulas in double precision, which share no code with the kernels.
 
-use crate::support::{Hits, Random, call};
+use crate::support::{Hits, Random, call, quantiles};
 use hairis::simd::Level;
 use hairis_gradients::AnyGradients;
 use hairis_reference::exact_reference;
@@ -145,15 +145,6 @@ fn errors(model: ModelId, level: Level) -> [Vec<f64>; 2] {
         by_hit.len() + by_parameter.len()
     );
     [by_hit, by_parameter]
-}
-
-/// Median, and the 999th of a thousand.
-fn quantiles(errors: &mut [f64]) -> [f64; 2] {
-    errors.sort_by(f64::total_cmp);
-    [
-        errors[errors.len() / 2],
-        errors[errors.len() - 1 - errors.len() / 1000],
-    ]
 }
 
 #[test]

@@ -1,7 +1,8 @@
-//! Tests: lanes against the interpreter of graphs, and against differences of the formulas in double precision.
+//! Tests: lanes against the interpreter of graphs, and against differences in double precision, of the graphs and of the formulas.
 
 mod differences;
 mod edges;
 mod lanes;
+mod precision;
 mod refusals;
 mod support;

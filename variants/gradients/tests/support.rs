@@ -184,3 +184,12 @@ pub(crate) fn call(gradients: &AnyGradients, hits: &Hits, level: Level, has_pdf:
         sums,
     }
 }
+
+/// Median, and the 999th of a thousand.
+pub(crate) fn quantiles(errors: &mut [f64]) -> [f64; 2] {
+    errors.sort_by(f64::total_cmp);
+    [
+        errors[errors.len() / 2],
+        errors[errors.len() - 1 - errors.len() / 1000],
+    ]
+}

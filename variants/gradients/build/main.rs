@@ -1,0 +1,351 @@
+//! Prints the derivatives of every model of the list as Rust over lanes.
+//!
+//! Each model is traced, its graph is differentiated, and each operation of the result becomes a line. Levels that fuse have a
+//! graph of their own.
+
+mod order;
+
+use core::fmt::Write as _;
+use hairis::simd::trace::Op;
+use hairis_shaders::{Call, Function, Kind, Program, Target};
+use hairis_variants::{ModelId, Registered, Visitor};
+use std::collections::BTreeSet;
+use std::env;
+use std::fs;
+use std::path::Path;
+
+/// Numbers of an evaluation: red, green, blue, and the density.
+const RESULTS: usize = 4;
+/// Numbers of a hit and a direction: `wo`, `h`, `wi`.
+const ARGUMENTS: usize = 7;
+/// Lints take minutes for a hundred thousand generated lines, and find nothing that somebody could mend.
+const LINTED: &str = "#[cfg(not(clippy))]";
+
+fn main() {
+    println!("cargo::rerun-if-changed=build");
+    let mut source = Source::default();
+    for id in ModelId::ALL {
+        id.visit(Print(*id, &mut source));
+    }
+    let dir = env::var("OUT_DIR").expect("cargo names a folder");
+    let path = Path::new(&dir).join("models.rs");
+    fs::write(path, source.text).expect("cargo's folder is written to");
+}
+
+/// Printed text, and the bodies so far: models that differ in their sampler share that of the value.
+#[derive(Default)]
+struct Source {
+    text: String,
+    bodies: Vec<String>,
+}
+
+/// Prints the derivatives of a model.
+struct Print<'a>(ModelId, &'a mut Source);
+
+impl Visitor for Print<'_> {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        let Self(id, source) = self;
+        let [exact, fused] = [Target::Exact, Target::Fused].map(Program::of::<M>);
+        let names: Vec<String> = exact.material().places().collect();
+        let mut module = format!(
+            "pub(crate) mod {id:?} {{\nuse super::*;\npub(crate) const MATERIAL: &[&str] = &{names:?};\n"
+        );
+        for (call, fields) in [("Value", &["value"][..]), ("ValuePdf", &["value", "pdf"])] {
+            let [exact, fused] = [&exact, &fused].map(|program| {
+                let eval = program.function(Call::EvalHit).only(fields);
+                eval.expect("fields of an evaluation").gradient()
+            });
+            let results: usize = if call == "Value" { 3 } else { RESULTS };
+            let read = read(&[&exact, &fused], names.len());
+            let mut slots = Slots::default();
+            let inputs = Inputs {
+                numbers: names.len(),
+                read: &read,
+            };
+            let body = format!(
+                "if const {{ L::FUSES }} {{\n{}}} else {{\n{}}}",
+                body(&fused, results, &inputs, &mut slots),
+                body(&exact, results, &inputs, &mut slots),
+            );
+            let place = source.bodies.iter().position(|known| *known == body);
+            let place = place.unwrap_or_else(|| {
+                let place = source.bodies.len();
+                let (n, s) = (read.len(), slots.kinds.len());
+                let (numbers, has_pdf) = (slots.text(), call == "ValuePdf");
+                let _ = writeln!(
+                    source.text,
+                    "#[derive(Debug)]\npub(crate) enum Body{place} {{}}\nimpl Body{place} {{\n\
+                     pub(crate) const S: usize = {s};\npub(crate) const N: usize = {n};\n}}\n\
+                     impl Rows<{s}, {n}> for Body{place} {{\nconst HAS_PDF: bool = {has_pdf};\n\
+                     const SLOTS: &[Slot; {s}] = &[{numbers}];\n#[inline(always)]\n\
+                     fn rows<L: Lanes<Stored = f32x8>>(c: &[f32x8; {s}], v: [L; INPUTS], sums: &mut [f32x8; {n}], \
+                     finite: &mut f32x8) -> [L; OUTPUTS] {{\n#[cfg(clippy)]\nreturn [v[0]; OUTPUTS];\n{LINTED}\n\
+                     {{\n{body}\n}}\n}}\n}}"
+                );
+                source.bodies.push(body);
+                place
+            });
+            let _ = writeln!(
+                module,
+                "pub(crate) type {call} = Body{place};\npub(crate) const {}: &[usize] = &{read:?};",
+                if call == "Value" {
+                    "VALUE"
+                } else {
+                    "VALUE_PDF"
+                }
+            );
+        }
+        module.push_str(&parameters(&exact));
+        source.text.push_str(&module);
+        source.text.push_str("}\n");
+    }
+}
+
+/// The derivatives by parameters of the weighted sum of a material's numbers, in one lane.
+fn parameters(program: &Program) -> String {
+    let gradient = program.function(Call::Material).gradient();
+    let fields = gradient.output().fields[program.material().fields.len()..].iter();
+    let fields: Vec<_> = fields.map(|field| field.name.as_str()).collect();
+    let gradient = gradient.only(&fields).expect("fields of the result");
+    let (numbers, count) = (program.material().len(), gradient.results().len());
+    let read: Vec<usize> = (0..count).collect();
+    let inputs = Inputs {
+        numbers: count,
+        read: &read,
+    };
+    let mut slots = Slots {
+        is_one_lane: true,
+        ..Slots::default()
+    };
+    let lines = statements(
+        &gradient,
+        &gradient.schedule(),
+        gradient.results(),
+        |place| operation(&gradient, place, &inputs, &mut slots) + ";",
+    );
+    let rows = gradient.results().iter();
+    let rows: Vec<_> = rows
+        .map(|row| operand(&gradient, *row, &inputs, &mut slots))
+        .collect();
+    format!(
+        "pub(crate) const PARAMETERS: usize = {count};\npub(crate) fn by_parameters(m: &[f32; {count}], v: &[f32; {numbers}]) \
+         -> [f32; {count}] {{\n#[cfg(clippy)]\nreturn [0.0; {count}];\n{LINTED}\n{{\ntype L = f32;\n\
+         {lines}return [{}];\n}};\n}}\n",
+        rows.join(", "),
+    )
+}
+
+/// Places of the numbers of a material that any of the functions reads.
+fn read(functions: &[&Function], numbers: usize) -> Vec<usize> {
+    let nodes = functions
+        .iter()
+        .flat_map(|function| function.graph().nodes());
+    let read: BTreeSet<usize> = nodes
+        .filter_map(|node| match node.kind {
+            Kind::Input(place) if (place as usize) < numbers => Some(place as usize),
+            _ => None,
+        })
+        .collect();
+    read.into_iter().collect()
+}
+
+/// Statements of a derivative. The sums of the numbers of a material grow, and the results and the derivatives by a hit are returned.
+fn body(gradient: &Function, results: usize, inputs: &Inputs<'_>, slots: &mut Slots) -> String {
+    let rows: Vec<u32> = gradient
+        .results()
+        .iter()
+        .map(|row| unchecked(gradient, *row))
+        .collect();
+    let (values, derivatives) = rows.split_at(results);
+    let (by_material, by_hit) = derivatives.split_at(inputs.numbers);
+    let order: Vec<u32> = order::order(gradient, &rows);
+    let by_material = by_material
+        .iter()
+        .zip(0_usize..)
+        .filter_map(|(row, place)| Some((*row, inputs.read.binary_search(&place).ok()?)));
+    let by_material: Vec<(u32, usize)> = by_material.collect();
+    let by_hit = &by_hit[..ARGUMENTS];
+    let returned: Vec<u32> = values.iter().chain(by_hit).copied().collect();
+    let mut out = "let mut check = L::load(finite);\n".to_owned();
+    out += &statements(gradient, &order, &returned, |place| {
+        let mut text = operation(gradient, place, inputs, slots) + ";";
+        for (_, row) in by_material.iter().filter(|(row, _)| *row == place) {
+            text += &format!("\nsums[{row}] = (L::load(&sums[{row}]) + x{place}).store();");
+        }
+        if by_hit.contains(&place) {
+            text += &format!("\ncheck = x{place}.mul_add(L::splat(0.0), check);");
+        }
+        text
+    });
+    for (row, place) in &by_material {
+        if !gradient.graph().node(*row).is_computed() {
+            let value = operand(gradient, *row, inputs, slots);
+            out += &format!("sums[{place}] = (L::load(&sums[{place}]) + {value}).store();\n");
+        }
+    }
+    out += "*finite = check.store();\n";
+    let mut outputs: Vec<String> = returned
+        .iter()
+        .map(|row| operand(gradient, *row, inputs, slots))
+        .collect();
+    for place in results..RESULTS {
+        outputs.insert(place, "L::splat(0.0)".to_owned());
+    }
+    out + &format!("[{}]", outputs.join(", "))
+}
+
+/// Statements in groups. In a debugger each name is in scope from its statement on: a scope in the one before, of which compilers bear a
+/// thousand and not ten thousand.
+fn statements(
+    function: &Function,
+    order: &[u32],
+    returned: &[u32],
+    mut operation: impl FnMut(u32) -> String,
+) -> String {
+    const GROUP: usize = 64;
+    let mut last = vec![0; function.graph().nodes().len()];
+    for (group, places) in order.chunks(GROUP).enumerate() {
+        for place in places {
+            for operand in function.graph().node(*place).operands() {
+                last[*operand as usize] = group;
+            }
+        }
+    }
+    for place in returned {
+        last[*place as usize] = order.len();
+    }
+    let mut out = String::new();
+    for (group, places) in order.chunks(GROUP).enumerate() {
+        let kept = places.iter().filter(|place| last[**place as usize] > group);
+        let kept: String = kept.map(|place| format!("x{place},")).collect();
+        let _ = writeln!(out, "let ({kept}) = {{");
+        for place in places {
+            let _ = writeln!(out, "let x{place} = {}", operation(*place));
+        }
+        let _ = writeln!(out, "({kept})\n}};");
+    }
+    out
+}
+
+/// The derivative of a row that is 0 where that is not finite: callers check.
+fn unchecked(gradient: &Function, row: u32) -> u32 {
+    let graph = gradient.graph();
+    let node = graph.node(row);
+    if node.kind == Kind::Op(Op::Select)
+        && let [mask, yes, no] = *node.operands()
+        && graph.number(no).map(f32::to_bits) == Some(0)
+        && graph.node(mask).kind == Kind::Op(Op::Less)
+        && let [magnitude, infinity] = *graph.node(mask).operands()
+        && graph.number(infinity) == Some(f32::INFINITY)
+        && graph.node(magnitude).kind == Kind::Op(Op::Abs)
+        && graph.node(magnitude).operands() == [yes]
+    {
+        return yes;
+    }
+    row
+}
+
+/// Numbers that all lanes share, of a material and constants: operands in memory.
+#[derive(Default)]
+struct Slots {
+    kinds: Vec<Kind>,
+    /// For one lane, where nothing is shared.
+    is_one_lane: bool,
+}
+
+impl Slots {
+    fn load(&mut self, kind: Kind) -> String {
+        match kind {
+            Kind::Input(place) if self.is_one_lane => return format!("m[{place}]"),
+            Kind::Op(Op::Constant(bits)) if self.is_one_lane => {
+                return format!("f32::from_bits(0x{bits:08x})");
+            }
+            _ => {}
+        }
+        let place = self
+            .kinds
+            .iter()
+            .position(|known| *known == kind)
+            .unwrap_or_else(|| {
+                self.kinds.push(kind);
+                self.kinds.len() - 1
+            });
+        format!("L::load(&c[{place}])")
+    }
+
+    fn text(&self) -> String {
+        let slots = self.kinds.iter().map(|kind| match kind {
+            Kind::Input(place) => format!("Slot::Number({place}),"),
+            Kind::Op(Op::Constant(bits)) => format!("Slot::Constant(0x{bits:08x}),"),
+            _ => unreachable!("no number"),
+        });
+        slots.collect()
+    }
+}
+
+/// Numbers of a material, and those of them that are read.
+struct Inputs<'a> {
+    numbers: usize,
+    read: &'a [usize],
+}
+
+/// An operand: a name, or a constant.
+fn operand(function: &Function, place: u32, inputs: &Inputs<'_>, slots: &mut Slots) -> String {
+    let graph = function.graph();
+    match graph.node(place).kind {
+        Kind::Input(input) => match (input as usize).checked_sub(inputs.numbers) {
+            Some(place) => format!("v[{place}]"),
+            None => slots.load(graph.node(place).kind),
+        },
+        Kind::Mask(mask) => {
+            let [low, high] = if mask { [0, 1] } else { [1, 0] };
+            format!("L::splat({low}.0).lt(L::splat({high}.0))")
+        }
+        Kind::Op(_) => match graph.number(place) {
+            Some(0.0) => format!("L::splat({:?})", graph.number(place).expect("a constant")),
+            Some(_) => slots.load(graph.node(place).kind),
+            None => format!("x{place}"),
+        },
+    }
+}
+
+/// An operation, as [`hairis::simd::Lanes`] has it.
+fn operation(function: &Function, place: u32, inputs: &Inputs<'_>, slots: &mut Slots) -> String {
+    let node = function.graph().node(place);
+    let Kind::Op(op) = node.kind else {
+        unreachable!("what is scheduled is computed")
+    };
+    let template = match op {
+        Op::Add => "$a + $b",
+        Op::Sub => "$a - $b",
+        Op::Mul => "$a * $b",
+        Op::Div => "$a / $b",
+        Op::Neg => "-$a",
+        Op::MulAdd => "$a.mul_add($b, $c)",
+        Op::Sqrt => "$a.sqrt()",
+        Op::Abs => "$a.abs()",
+        Op::Min => "$a.min($b)",
+        Op::Max => "$a.max($b)",
+        Op::TimesSign => "$a.times_sign($b)",
+        Op::NegateIf => "L::negate($a, $b)",
+        Op::ShiftLeft23 => "$a.bits_shl_23()",
+        Op::Mantissa => "$a.split_exponent().0",
+        Op::Exponent => "$a.split_exponent().1",
+        Op::Upper => "upper($a)",
+        Op::Less => "$a.lt($b)",
+        Op::And => "L::and($a, $b)",
+        Op::Or => "L::or($a, $b)",
+        Op::Select => "L::select($a, $b, $c)",
+        // Constants are operands, powers are of targets that have them, and the rest is of samplers.
+        Op::Constant(_) | Op::Exp2 | Op::Log2 | Op::AtLeast | Op::Not => {
+            panic!("no line is printed for {op:?}, which no evaluation of the list has had")
+        }
+    };
+    let mut text = template.to_owned();
+    for (name, place) in ["$a", "$b", "$c"].iter().zip(node.operands()) {
+        text = text.replace(name, &operand(function, *place, inputs, slots));
+    }
+    text
+}
