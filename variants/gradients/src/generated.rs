@@ -120,13 +120,18 @@ impl<G: Rows<S, N>, const S: usize, const N: usize> Kernel for Hits<'_, G, S, N>
         }
         for packet in 0..packets {
             let mut v = [L::splat(0.0); INPUTS];
+            // Each column has the packet; an index would leave a panic in the code.
             for (to, column) in v.iter_mut().zip(&inputs) {
-                *to = L::load(&f32x8::new(column[packet]));
+                if let Some(numbers) = column.get(packet) {
+                    *to = L::load(&f32x8::new(*numbers));
+                }
             }
             let out = G::rows::<L>(self.shared, v, self.sums, self.finite);
             for (column, row) in outputs.iter().zip(&out) {
                 let column: &[Cell<[f32; 8]>] = column;
-                column[packet].set(row.store().to_array());
+                if let Some(numbers) = column.get(packet) {
+                    numbers.set(row.store().to_array());
+                }
             }
         }
     }
