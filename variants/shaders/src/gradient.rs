@@ -13,8 +13,6 @@ const LEAST_ROOT: f32 = 1e-18;
 struct Pass {
     graph: Graph,
     adjoints: Vec<Option<u32>>,
-    /// Whether the target has products with sums in one operation.
-    fuses: bool,
 }
 
 impl Pass {
@@ -31,23 +29,9 @@ impl Pass {
         }
         let sum = match self.adjoints[to as usize] {
             None => term,
-            Some(before) => self.sum(before, term),
+            Some(before) => self.op(Op::Add, [before, term]),
         };
         self.adjoints[to as usize] = Some(sum);
-    }
-
-    /// Sum of two derivatives, of which either may be a product.
-    fn sum(&mut self, before: u32, term: u32) -> u32 {
-        let product = |place: u32| {
-            let node = self.graph.node(place);
-            (self.fuses && node.kind == Kind::Op(Op::Mul))
-                .then(|| [0, 1].map(|i| node.operands()[i]))
-        };
-        match (product(term), product(before)) {
-            (Some([a, b]), _) => self.op(Op::MulAdd, [a, b, before]),
-            (None, Some([a, b])) => self.op(Op::MulAdd, [a, b, term]),
-            (None, None) => self.op(Op::Add, [before, term]),
-        }
     }
 
     fn reads_arguments(&self, place: u32) -> bool {
@@ -90,8 +74,9 @@ impl Pass {
             Op::Div => {
                 let by = self.op(Op::Div, [adjoint, b]);
                 self.give(a, by);
-                let minus = self.op(Op::Neg, [this]);
-                self.give_product(b, minus, by);
+                let product = self.op(Op::Mul, [by, this]);
+                let minus = self.op(Op::Neg, [product]);
+                self.give(b, minus);
             }
             Op::Neg => {
                 let minus = self.op(Op::Neg, [adjoint]);
@@ -174,9 +159,7 @@ impl Function {
     #[must_use]
     pub fn gradient(&self) -> Self {
         let inputs = self.inputs().len();
-        let mut nodes = self.graph().nodes().iter();
         let mut pass = Pass {
-            fuses: nodes.any(|node| node.kind == Kind::Op(Op::MulAdd)),
             graph: self.graph().clone(),
             adjoints: vec![None; self.graph().nodes().len()],
         };
