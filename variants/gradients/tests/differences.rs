@@ -70,10 +70,11 @@ fn errors(model: ModelId, level: Level) -> [Vec<f64>; 2] {
         let values = random.values(model, false);
         let gradients = AnyGradients::new(model, &values).expect("legal values");
         for _ in 0..3 {
-            let (wo, h, wi) = (random.sphere(), random.range(-0.95, 0.95), random.sphere());
-            let weights = [(); 4].map(|()| random.range(-1.0, 1.0));
-            let mut hits = Hits::default();
-            hits.push(wo, h, wi, weights);
+            let hits = Hits::one(&mut random);
+            let [a, b, c, h, x, y, z, r, g, blue, pdf] = hits.numbers(0)[..] else {
+                unreachable!("a hit and its weights")
+            };
+            let (wo, wi, weights) = ([a, b, c], [x, y, z], [r, g, blue, pdf]);
             let found = call(&gradients, &hits, level, true);
             let loss = Loss {
                 model,

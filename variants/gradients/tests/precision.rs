@@ -85,14 +85,12 @@ impl Visitor for Precision {
             let material = numbers(&M::MODEL.material(&params));
             let gradients = AnyGradients::new(id, &values).expect("legal values");
             for _ in 0..3 {
-                let (wo, h, wi) = (random.sphere(), random.range(-0.95, 0.95), random.sphere());
-                let weights = [(); 4].map(|()| random.range(-1.0, 1.0));
-                let mut hits = Hits::default();
-                hits.push(wo, h, wi, weights);
+                let hits = Hits::one(&mut random);
                 let found = call(&gradients, &hits, level, true);
-                let mut inputs = material.clone();
-                inputs.extend(&hits.numbers(0)[..7]);
-                let loss = Loss::new(eval, double(&inputs), double(&weights));
+                let hit = hits.numbers(0);
+                let (hit, weights) = hit.split_at(7);
+                let inputs = [&material[..], hit].concat();
+                let loss = Loss::new(eval, double(&inputs), double(weights));
                 let rows = double(&found.rows[0][4..]);
                 let (of_material, of_hit) = rows.split_at(material.len());
                 by[0].extend(loss.errors(material.len(), of_hit.iter().copied()));

@@ -107,6 +107,15 @@ impl Hits {
         }
     }
 
+    /// One hit with its weights: two directions of the whole sphere, and an offset away from the edges.
+    pub(crate) fn one(random: &mut Random) -> Self {
+        let (wo, h, wi) = (random.sphere(), random.range(-0.95, 0.95), random.sphere());
+        let weights = [(); 4].map(|()| random.range(-1.0, 1.0));
+        let mut hits = Self::default();
+        hits.push(wo, h, wi, weights);
+        hits
+    }
+
     pub(crate) fn len(&self) -> usize {
         self.h.len()
     }
