@@ -35,8 +35,9 @@ def comments(text):
 
 
 def sentences(markdown):
-    """Sentences of a text, without code, tables, headings, links' targets and list marks."""
-    text = re.sub(r"(?ms)^\s*(```|~~~).*?^\s*(```|~~~)\s*$", "\n\n", markdown)
+    """Sentences of a text, without code, tables and their generated captions, headings, links' targets and list marks."""
+    text = re.sub(r"(?ms)^<!-- table .*?^<!-- end of table -->$", "\n\n", markdown)
+    text = re.sub(r"(?ms)^\s*(```|~~~).*?^\s*(```|~~~)\s*$", "\n\n", text)
     lines = []
     for line in text.splitlines():
         if re.match(r"\s*(\||#|<|!\[|\[[^\]]+\]: )", line):
@@ -46,7 +47,7 @@ def sentences(markdown):
         lines.append(line)
     text = "\n".join(lines)
     text = re.sub(r"`[^`]*`", "code", text)
-    text = re.sub(r"\]\([^)]*\)", "]", text)
+    text = re.sub(r"\](\([^)]*\)|\[[^\]]*\])", "]", text)
     text = re.sub(r"[*_\[\]]", "", text)
     found = []
     for paragraph in re.split(r"\n\s*\n", text):
@@ -75,7 +76,8 @@ def dead_links(names):
     """Relative links of Markdown files whose file or heading does not exist."""
     for name in names:
         text = open(name, encoding="utf-8").read()
-        for target in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"(?ms)^```.*?^```", "", text)):
+        # `[text](target)`, and `[label]: target` on a line of its own.
+        for target in re.findall(r"(?m)(?:\]\(|^\[[^\]]+\]: )([^)\s]+)", re.sub(r"(?ms)^```.*?^```", "", text)):
             if re.match(r"[a-z]+://|crate\b", target):
                 continue
             path, _, anchor = target.partition("#")
@@ -89,7 +91,7 @@ def dead_links(names):
 
 
 def main():
-    guide = tracked("kernels/src/guide/*.md")
+    guide = tracked("*/src/guide/*.md", "*/docs/*.md")
     readmes = [f for f in tracked("*.md") if f not in guide and not f.endswith(("CHANGELOG.md", "ERRATA.md", "records/README.md"))]
     rust = tracked("kernels/src/*.rs", "kernels/reference/src/*.rs", "variants/*.rs", "harness/*.rs", "benches/src/*.rs")
     read = {name: open(name, encoding="utf-8").read() for name in guide + readmes + rust}

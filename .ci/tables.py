@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Promise: tables with figures in README files are those of their records. A table stands between the marks
+"""Promise: tables with figures in Markdown files are those of their records. A table stands between the marks
 `<!-- table NAME: written by .ci/tables.py --write -->` and `<!-- end of table -->`, below a line that names record, machine,
 commit and date. `tables.py` fails where a table differs from its record, `tables.py --write` writes it anew."""
 
