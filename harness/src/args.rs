@@ -36,7 +36,7 @@ depend on the machine as well. With the features `parquet` and `png` of the buil
 
 const SHADER: &str = "\
 Every file has the presets of the model as functions without arguments: hairis_gaussian_material_brown(). `exact` is the
-default of c, `gpu` that of the other targets: see variants/shaders/README.md.
+default of c, `gpu` that of the other targets: see variants/shaders/src/guide/generated.md.
 
   hairis shader --model gaussian --target c > hairis_gaussian.h
   hairis shader --model chiang --target wgsl --call eval_hit --call sample_hit > chiang.wgsl

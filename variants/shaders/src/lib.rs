@@ -18,6 +18,8 @@ mod double;
 mod function;
 mod gradient;
 mod graph;
+#[cfg(any(doc, doctest))]
+pub mod guide;
 mod material;
 mod print;
 mod program;
@@ -34,9 +36,3 @@ pub use program::Program;
 #[doc(hidden)]
 pub use program::every_operation;
 pub use record::{Field, Record, Shape, numbers};
-
-/// Examples of the package's README.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-#[derive(Debug)]
-pub struct Readme;

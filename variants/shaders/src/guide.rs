@@ -1,0 +1,15 @@
+//! Guide to generated source, chapter by chapter.
+//!
+//! | chapter | question |
+//! |---|---|
+//! | [`generated`] | Which functions does a file have, which languages are there, and which bits do they return? |
+//! | [`tracing`] | How does a program in Rust trace, print, shrink and differentiate a model? |
+
+// Targets of links come before the paths in the Markdown file, which are for readers of the repository: the first
+// definition of a target counts.
+#[doc = "[energy]: https://docs.rs/hairis/latest/hairis/guide/energy/\n[readme]: crate\n\n"]
+#[doc = include_str!("guide/generated.md")]
+pub mod generated {}
+
+#[doc = include_str!("guide/tracing.md")]
+pub mod tracing {}
