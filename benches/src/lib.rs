@@ -9,6 +9,8 @@ pub mod check;
 pub mod contenders;
 pub mod cpu;
 pub mod entries;
+#[cfg(any(doc, doctest))]
+pub mod guide;
 pub mod inputs;
 pub mod math;
 pub mod platform;
