@@ -20,6 +20,8 @@ pub mod film;
 pub mod fit;
 pub mod formats;
 pub mod geometry;
+#[cfg(any(doc, doctest))]
+pub mod guide;
 pub mod hair;
 pub mod layers;
 pub mod lights;
