@@ -9,6 +9,8 @@ pub mod difference;
 pub mod efficiency;
 pub mod figures;
 pub mod fit;
+#[cfg(any(doc, doctest))]
+pub mod guide;
 pub mod journal;
 pub mod lights;
 pub mod materials;
