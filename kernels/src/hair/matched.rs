@@ -71,7 +71,7 @@ use crate::{HairParams, LobeMask, PerLobe};
 ///
 /// Any broad light gains. No sampler of the hair reduces the variance that a small or a textured light adds. In the far tails of
 /// a Gaussian lobe, where such a light may stand, the published sampler puts more samples. Sample those lights, and combine. The
-/// README of the package has times, and which sampler to use when.
+/// [guide](crate::guide::choosing) has times, and which sampler to use when.
 ///
 /// ```
 /// use glam::Vec3;
