@@ -55,8 +55,9 @@ impl Visitor for Print<'_> {
         for (call, fields) in [("Value", &["value"][..]), ("ValuePdf", &["value", "pdf"])] {
             let [exact, fused] = [&exact, &fused].map(|program| {
                 let eval = program.function(Call::EvalHit).only(fields);
-                eval.expect("fields of an evaluation").gradient()
+                eval.expect("fields of an evaluation")
             });
+            let (exact, fused) = (exact.gradient(), fused.fused_gradient());
             let results: usize = if call == "Value" { 3 } else { RESULTS };
             let read = read(&[&exact, &fused], names.len());
             let mut slots = Slots::default();

@@ -34,14 +34,14 @@ impl Visitor for Bits {
 
     fn visit<M: Registered>(self) {
         for level in Level::available() {
-            let target = if level.fuses() {
-                Target::Fused
+            let (target, gradient): (_, fn(&Function) -> Function) = if level.fuses() {
+                (Target::Fused, Function::fused_gradient)
             } else {
-                Target::Exact
+                (Target::Exact, Function::gradient)
             };
             let eval = Program::of::<M>(target).function(Call::EvalHit).clone();
             let value = eval.only(&["value"]).expect("a field");
-            let functions = [eval.gradient(), value.gradient()];
+            let functions = [gradient(&eval), gradient(&value)];
             let mut random = Random(71);
             for material in 0..6 {
                 let values = random.values(self.0, material % 3 == 2);

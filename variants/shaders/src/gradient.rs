@@ -13,6 +13,8 @@ const LEAST_ROOT: f32 = 1e-18;
 struct Pass {
     graph: Graph,
     adjoints: Vec<Option<u32>>,
+    /// Whether products are added in one operation.
+    fuses: bool,
 }
 
 impl Pass {
@@ -29,9 +31,23 @@ impl Pass {
         }
         let sum = match self.adjoints[to as usize] {
             None => term,
-            Some(before) => self.op(Op::Add, [before, term]),
+            Some(before) => self.sum(before, term),
         };
         self.adjoints[to as usize] = Some(sum);
+    }
+
+    /// Sum of two derivatives, of which either may be a product.
+    fn sum(&mut self, before: u32, term: u32) -> u32 {
+        let product = |place: u32| {
+            let node = self.graph.node(place);
+            (self.fuses && node.kind == Kind::Op(Op::Mul))
+                .then(|| [0, 1].map(|i| node.operands()[i]))
+        };
+        match (product(term), product(before)) {
+            (Some([a, b]), _) => self.op(Op::MulAdd, [a, b, before]),
+            (None, Some([a, b])) => self.op(Op::MulAdd, [a, b, term]),
+            (None, None) => self.op(Op::Add, [before, term]),
+        }
     }
 
     fn reads_arguments(&self, place: u32) -> bool {
@@ -74,9 +90,8 @@ impl Pass {
             Op::Div => {
                 let by = self.op(Op::Div, [adjoint, b]);
                 self.give(a, by);
-                let product = self.op(Op::Mul, [by, this]);
-                let minus = self.op(Op::Neg, [product]);
-                self.give(b, minus);
+                let minus = self.op(Op::Neg, [this]);
+                self.give_product(b, minus, by);
             }
             Op::Neg => {
                 let minus = self.op(Op::Neg, [adjoint]);
@@ -158,8 +173,24 @@ impl Function {
     /// If there are 2^32 operations.
     #[must_use]
     pub fn gradient(&self) -> Self {
+        self.differentiate(false)
+    }
+
+    /// As [`gradient`](Self::gradient), with products of derivatives added in one operation, which a target must round once. That
+    /// is a seventh fewer operations. On a GPU, derivatives of materials lost digits by it.
+    ///
+    /// # Panics
+    ///
+    /// If there are 2^32 operations.
+    #[must_use]
+    pub fn fused_gradient(&self) -> Self {
+        self.differentiate(true)
+    }
+
+    fn differentiate(&self, fuses: bool) -> Self {
         let inputs = self.inputs().len();
         let mut pass = Pass {
+            fuses,
             graph: self.graph().clone(),
             adjoints: vec![None; self.graph().nodes().len()],
         };
