@@ -96,22 +96,8 @@ pub static MODELS: LazyLock<Vec<(String, ModelId)>> = LazyLock::new(|| {
         Some((_, word)) if !id.is_default() => (format!("{}-{word}", id.name()), id),
         _ => (id.name().to_owned(), id),
     };
-    ModelId::ALL
-        .iter()
-        .copied()
-        .filter(|id| takes_part(*id))
-        .map(name)
-        .collect()
+    ModelId::ALL.iter().copied().map(name).collect()
 });
-
-/// Whether a model is measured. Models that differ in the number of bands alone are not.
-const fn takes_part(id: ModelId) -> bool {
-    use ModelId::{CauchyMatched5, CauchyMatched25, GaussianMatched5, GaussianMatched25};
-    !matches!(
-        id,
-        GaussianMatched5 | GaussianMatched25 | CauchyMatched5 | CauchyMatched25
-    )
-}
 
 /// Name of the scalar baseline, the paper's formulas in `f32`.
 pub const REFERENCE: &str = "reference";
@@ -159,23 +145,20 @@ impl<V: Visitor> hairis_reference::Visitor for OfModel<'_, V> {
     type Output = ();
 
     fn visit<M: Formulas>(self) {
-        // At compile time: models that are not measured are not compiled.
-        if const { takes_part(ModelId::of::<M>()) } {
-            let Self {
-                op,
-                name,
-                inputs,
-                visitor,
-            } = self;
-            Of::<M> {
-                op,
-                id: ModelId::of::<M>(),
-                name,
-                inputs,
-                model: PhantomData,
-            }
-            .visit(visitor);
+        let Self {
+            op,
+            name,
+            inputs,
+            visitor,
+        } = self;
+        Of::<M> {
+            op,
+            id: ModelId::of::<M>(),
+            name,
+            inputs,
+            model: PhantomData,
         }
+        .visit(visitor);
     }
 }
 

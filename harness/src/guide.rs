@@ -26,6 +26,7 @@ macro_rules! links {
 [compare]: crate::guide::compare
 [eval]: crate::guide::eval
 [fit]: crate::guide::fit
+[flags]: crate::guide::flags
 [generated]: https://docs.rs/hairis-shaders/latest/hairis_shaders/guide/generated/
 [gradients]: hairis_gradients
 [looks]: crate::guide::looks

@@ -19,25 +19,42 @@ pub enum Sampler {
     Uniform,
     /// By the published sampler.
     Published,
-    /// By the sampler matched to the model with five bands: its cheapest.
+    /// By the sampler matched to the model, with nine bands.
+    Matched,
+    /// With five: its cheapest.
     #[serde(rename = "matched-5")]
     Matched5,
-    /// With nine, as by default.
-    Matched,
     /// With twenty-five: its least variance.
     #[serde(rename = "matched-25")]
     Matched25,
 }
 
+/// Number of samplers of the build: two of them come with the feature `every-sampler`.
+const COUNT: usize = match ModelId::find("gaussian", Some("matched-25")) {
+    Some(_) => 5,
+    None => 3,
+};
+
 impl Sampler {
-    /// Every sampler, in the order of reports.
-    pub const ALL: [Self; 5] = [
-        Self::Uniform,
-        Self::Published,
-        Self::Matched5,
-        Self::Matched,
-        Self::Matched25,
-    ];
+    /// Every sampler of the build, in the order of reports.
+    pub const ALL: [Self; COUNT] = {
+        let every = [
+            Self::Uniform,
+            Self::Published,
+            Self::Matched,
+            Self::Matched5,
+            Self::Matched25,
+        ];
+        let mut all = [Self::Uniform; COUNT];
+        let mut place = 0;
+        while place < COUNT {
+            all[place] = every[place];
+            place += 1;
+        }
+        all
+    };
+    /// The sampler whose weights vary least.
+    pub(crate) const BEST: Self = Self::ALL[COUNT - 1];
 
     /// Name in reports and in rows.
     pub(crate) fn name(self) -> &'static str {
@@ -68,14 +85,20 @@ impl Sampler {
         }
     }
 
-    /// Place among the streams of random numbers.
+    /// Place among the streams of random numbers, by the number of bands.
     pub(crate) const fn index(self) -> u64 {
-        self as u64
+        self.color() as u64
     }
 
     /// Number of its colour, the same in every chart of every report.
     pub(crate) const fn color(self) -> usize {
-        self as usize
+        match self {
+            Self::Uniform => 0,
+            Self::Published => 1,
+            Self::Matched5 => 2,
+            Self::Matched => 3,
+            Self::Matched25 => 4,
+        }
     }
 }
 

@@ -9,8 +9,8 @@
 //!
 //! The sampler `perfect` is not runnable: directions of a density proportional to the mean of RGB of `S cos theta_i`, the
 //! limit of samplers of the hair that ignore the light. The V that is left belongs to the light.
-//! It is estimated from directions that are drawn anyway: its two integrals from those of `matched-25`, whose
-//! weights are bounded and vary least, and of the light; the albedo as the mean of the same weights, whose errors cancel
+//! It is estimated from directions that are drawn anyway: its two integrals from those of the matched sampler of most
+//! bands, whose weights are bounded and vary least, and of the light; the albedo as the mean of the same weights, whose errors cancel
 //! against those of the integrals, so that V under constant light is 0.
 //!
 //! V and the divergence are integrals. They are estimated with directions of the sampler and, for lights that do not cover

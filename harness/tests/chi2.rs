@@ -347,13 +347,13 @@ fn samples_of_the_cauchy_model_follow_its_density() {
 #[test]
 fn samples_of_few_bands_follow_their_density() {
     check(
-        registered(ModelId::GaussianMatched5),
+        of_type(Matched::<_, 5>(Gaussian)),
         matched(Shape::Gaussian, 5),
         "5 bands Gaussian",
         5,
     );
     check(
-        registered(ModelId::CauchyMatched5),
+        of_type(Matched::<_, 5>(Cauchy::PAPER)),
         matched(Shape::Cauchy, 5),
         "5 bands Cauchy",
         6,
@@ -379,13 +379,13 @@ fn samples_of_the_default_bands_follow_their_density() {
 #[test]
 fn samples_of_many_bands_follow_their_density() {
     check(
-        registered(ModelId::GaussianMatched25),
+        of_type(Matched::<_, 25>(Gaussian)),
         matched(Shape::Gaussian, 25),
         "25 bands Gaussian",
         7,
     );
     check(
-        registered(ModelId::CauchyMatched25),
+        of_type(Matched::<_, 25>(Cauchy::PAPER)),
         matched(Shape::Cauchy, 25),
         "25 bands Cauchy",
         8,

@@ -1,7 +1,8 @@
 //! The only list of models.
 //!
 //! A new model is a line of [`for_each_model!`] below, and beside its [`Model`] an implementation of [`Registered`], with
-//! [`Parameters`] for its parameters. Run-time handles, the harness and the benches then include it.
+//! [`Parameters`] for its parameters. Run-time handles, the harness and the benches then include it. Models that few programs need are
+//! lines of [`with_every_sampler!`], which the feature `every-sampler` adds, as they double the code.
 
 #[cfg(feature = "any")]
 mod any;
@@ -193,30 +194,51 @@ macro_rules! models {
 #[macro_export]
 macro_rules! for_each_model {
     ($callback:ident) => {
-        $callback! {
+        $crate::with_every_sampler! { $callback
             /// The published model with the published sampler.
             Gaussian: Published<Gaussian>;
-            /// The published model, sampler matched with five bands.
-            GaussianMatched5: Matched<Gaussian, 5>;
             /// The published model, sampler matched with nine bands.
             GaussianMatched: Matched<Gaussian>;
-            /// The published model, sampler matched with twenty-five bands.
-            GaussianMatched25: Matched<Gaussian, 25>;
             /// The all-Cauchy variant with the published sampler.
             Cauchy: AllCauchy;
-            /// The all-Cauchy variant, sampler matched with five bands.
-            CauchyMatched5: Matched<Cauchy, 5>;
             /// The all-Cauchy variant, sampler matched with nine bands.
             CauchyMatched: Matched<Cauchy>;
-            /// The all-Cauchy variant, sampler matched with twenty-five bands.
-            CauchyMatched25: Matched<Cauchy, 25>;
             /// Kajiya and Kay's model.
             KajiyaKay: KajiyaKay;
             /// The energy-conserving fibre, lobes chosen by their mean over the channels.
             Chiang: Chiang;
+        }
+    };
+}
+
+/// Calls `$callback!` with these models and those that few programs need.
+#[cfg(feature = "every-sampler")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! with_every_sampler {
+    ($callback:ident $($models:tt)*) => {
+        $callback! {
+            $($models)*
+            /// The published model, sampler matched with five bands.
+            GaussianMatched5: Matched<Gaussian, 5>;
+            /// The published model, sampler matched with twenty-five bands.
+            GaussianMatched25: Matched<Gaussian, 25>;
+            /// The all-Cauchy variant, sampler matched with five bands.
+            CauchyMatched5: Matched<Cauchy, 5>;
+            /// The all-Cauchy variant, sampler matched with twenty-five bands.
+            CauchyMatched25: Matched<Cauchy, 25>;
             /// The energy-conserving fibre, lobes chosen by their share in each channel.
             ChiangByChannel: Chiang<true>;
         }
+    };
+}
+
+#[cfg(not(feature = "every-sampler"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! with_every_sampler {
+    ($callback:ident $($models:tt)*) => {
+        $callback! { $($models)* }
     };
 }
 for_each_model! { models }
@@ -224,7 +246,7 @@ for_each_model! { models }
 impl ModelId {
     /// The first entry of each name.
     #[inline]
-    pub fn defaults_of_names() -> impl Iterator<Item = Self> {
+    pub fn defaults_of_names() -> impl Iterator<Item = Self> + Clone {
         Self::ALL.iter().copied().filter(|id| id.is_default())
     }
 
@@ -235,28 +257,13 @@ impl ModelId {
         matches!(Self::find(self.name(), None), Some(first) if first as usize == self as usize)
     }
 
-    /// Whether programs that must be small keep the entry: all but bands of another number than the default, and Chiang's choice by
-    /// channel.
-    #[inline]
-    #[must_use]
-    pub const fn is_essential(self) -> bool {
-        !matches!(
-            self,
-            Self::GaussianMatched5
-                | Self::GaussianMatched25
-                | Self::CauchyMatched5
-                | Self::CauchyMatched25
-                | Self::ChiangByChannel
-        )
-    }
-
     /// The entry of this name, with this word of its [`choice`](Self::choice); without a word, the first of the name. `ou` is
     /// accepted for `published`.
     ///
     /// ```
     /// use hairis_variants::ModelId;
     /// assert_eq!(ModelId::find("cauchy", None), Some(ModelId::Cauchy));
-    /// assert_eq!(ModelId::find("cauchy", Some("matched-5")), Some(ModelId::CauchyMatched5));
+    /// assert_eq!(ModelId::find("cauchy", Some("matched")), Some(ModelId::CauchyMatched));
     /// ```
     #[inline]
     #[must_use]

@@ -25,9 +25,6 @@ impl Calls {
         impl Visitor for All {
             type Output = Calls;
             fn visit<M: Registered>(self) -> Calls {
-                if const { !ModelId::of::<M>().is_essential() } {
-                    return Self.visit::<Matched<Gaussian>>();
-                }
                 Calls {
                     eval: eval::<M>,
                     sample: sample::<M>,

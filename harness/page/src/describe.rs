@@ -137,7 +137,7 @@ pub(crate) fn write(text: &mut Text) {
         );
         let mut mark = "";
         for (index, id) in ModelId::ALL.iter().enumerate() {
-            if id.name() == name && id.is_essential() {
+            if id.name() == name {
                 let word = Quoted(id.choice().map_or("", |(_, word)| word));
                 say!(text, "{mark}{{\"model\":{index},\"word\":{word}}}");
                 mark = ",";

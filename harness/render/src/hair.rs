@@ -306,7 +306,7 @@ mod tests {
             message("phong", UNIFORM, "blond").contains("kajiya-kay")
                 && message("phong", UNIFORM, "blond").contains("phong")
         );
-        assert!(message("gaussian", "best", "blond").contains("matched-25"));
+        assert!(message("gaussian", "best", "blond").contains("published, matched"));
         assert!(message("gaussian", UNIFORM, "green").contains("glossy"));
         assert!(
             !message("chiang", UNIFORM, "glossy").contains("black, glossy"),

@@ -78,7 +78,7 @@ fn samplers_weightings_and_sequences_agree() {
             }
             one.rectangle_sampling = RectangleSampling::SolidAngle;
         }
-        for sampler in ["uniform", "published", "matched-5", "matched-25"] {
+        for sampler in ["uniform", "published"] {
             one.hair = hair("gaussian", sampler, preset);
             check(&one, sampler, base);
         }
@@ -100,22 +100,17 @@ fn every_model_renders() {
 }
 
 #[test]
-fn models_of_one_name_agree() {
-    for (name, words) in [("chiang", [0, 1]), ("cauchy", [0, 2])] {
-        let ids: Vec<&ModelId> = ModelId::ALL.iter().filter(|id| id.name() == name).collect();
-        let means = words.map(|word| {
-            let word: usize = word;
-            let choice = ids[word].choice().expect("several").1;
-            let one = scene(Name::AreaHead, hair(name, choice, "brown"), 800, 12);
-            let settings = Settings {
-                integrator: Integrator::Direct,
-                seed: 1 + word as u64,
-                ..Settings::default()
-            };
-            mean(&one, &settings, 16, RUNS, 1)
-        });
-        assert!(distance(&means[0], &means[1]) < 4.0, "{name}: {means:?}");
-    }
+fn samplers_agree() {
+    let means = ["published", "matched"].map(|word| {
+        let one = scene(Name::AreaHead, hair("cauchy", word, "brown"), 800, 12);
+        let settings = Settings {
+            integrator: Integrator::Direct,
+            seed: word.len() as u64,
+            ..Settings::default()
+        };
+        mean(&one, &settings, 16, RUNS, 1)
+    });
+    assert!(distance(&means[0], &means[1]) < 4.0, "{means:?}");
 }
 
 /// The scene mirrored in x, by rebuilding its strands; `swap` turns every strand around.

@@ -8,6 +8,7 @@ mod tables;
 
 use super::finished::Study;
 use crate::difference::{Difference, SIGMA_DEG};
+use crate::variance::SOURCE;
 use hairis_instruments::machine;
 use hairis_instruments::report::{Report, Section};
 use serde_json::Value;
@@ -109,13 +110,17 @@ impl Study {
         );
         let claims = "`hairis claims` holds each of the paper's claims against figures; run with the same --out before \
                       `hairis merge` or `hairis study`, its verdicts are part of this page.";
+        let perfect = format!(
+            "Perfect sampling is estimated from the directions of `{}`, whose weights vary least and are bounded, and \
+             of the light; the albedo it needs is the mean of the same weights, so that their errors cancel. A look-up is \
+             timed in directions of `published`, in turns with the samplers.",
+            SOURCE.name()
+        );
         let others = [
             "Gains are medians over the grid, and other means geometric, unless it says otherwise. Standard errors are those \
              of the sampling, the grid being what it is; that of a median is that of its cell. Cells where a V is known to no \
              better than 25% are left out of gains. Words such as less and more are used beyond two standard errors.",
-            "Perfect sampling is estimated from the directions of `matched-25`, whose weights vary least and are bounded, and \
-             of the light; the albedo it needs is the mean of the same weights, so that their errors cancel. A look-up is \
-             timed in directions of `published`, in turns with the samplers.",
+            &perfect,
             "Differences of looks are quadrature in double precision and have no statistical error; their own is below 0.1% \
              of each figure.",
             "The rows are in study.csv, efficiency.csv, difference.csv and refitted.csv, the figures in figures/.",

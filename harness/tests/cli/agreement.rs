@@ -4,7 +4,7 @@ use super::{PATHS, eval, numbers, with_xi};
 use crate::cases::{Case, Cases, angles};
 use serde_json::{Value, json};
 
-const SAMPLERS: [&str; 4] = ["published", "matched-5", "matched", "matched-25"];
+const SAMPLERS: [&str; 2] = ["published", "matched"];
 
 /// Relative error that the bounds of the kernels allow. All paths are asked about the same rounded input.
 ///

@@ -354,7 +354,7 @@ fn materials_join_a_study_and_move_no_row() {
     let has = |words: &str| rows.lines().any(|line| line.starts_with(words));
     assert!(has("soft,kajiya-kay,85.0,uniform,constant,"), "{rows}");
     assert!(
-        has("chiang-") && rows.contains(",by-channel,clear sky,"),
+        has("chiang-") && rows.contains(",mean,clear sky,"),
         "{rows}"
     );
     assert!(

@@ -89,7 +89,7 @@ pub unsafe extern "C" fn hairis_restrict(raw: *mut RawBsdf, lobes: u32) {
 pub unsafe extern "C" fn hairis_albedo(raw: *const RawBsdf, to: *mut [[f32; 3]; 4]) {
     // SAFETY: the caller's promise.
     let id = unsafe { model_at(raw) };
-    let albedo = id.and_then(|id| {
+    let albedo = id.map(|id| {
         visit!(id, M, (raw: *const RawBsdf) -> PerLobe<[f32; 3]>, {
             // SAFETY: the tag is the model's.
             unsafe { bsdf::<M>(raw) }.albedo()
@@ -109,7 +109,7 @@ pub unsafe extern "C" fn hairis_eval_pdf(
 ) -> EvalResult {
     // SAFETY: the caller's promise.
     let id: Option<ModelId> = unsafe { model_at(raw) };
-    let result = id.and_then(|id| {
+    let result = id.map(|id| {
         visit!(id, M, (raw: *const RawBsdf, u: f32, v: f32, w: f32) -> EvalResult, {
             // SAFETY: the tag is the model's.
             let eval = unsafe { bsdf::<M>(raw) }.eval_pdf(Vec3::new(u, v, w));
@@ -130,7 +130,7 @@ pub unsafe extern "C" fn hairis_lobes(
 ) {
     // SAFETY: the caller's promise.
     let id = unsafe { model_at(raw) };
-    let lobes = id.and_then(|id| {
+    let lobes = id.map(|id| {
         visit!(id, M, (raw: *const RawBsdf, u: f32, v: f32, w: f32) -> [LobeResult; 4], {
             // SAFETY: the tag is the model's.
             let PerLobe(lobes) = unsafe { bsdf::<M>(raw) }.lobes(Vec3::new(u, v, w));
@@ -158,7 +158,7 @@ pub unsafe extern "C" fn hairis_sample(
     };
     // SAFETY: the caller's promise.
     let id = unsafe { model_at(raw) };
-    let result = id.and_then(|id| {
+    let result = id.map(|id| {
         visit!(id, M, (raw: *const RawBsdf, xi_lobe: f32, xi_theta: f32, xi_phi: f32) -> SampleResult, {
             // SAFETY: the tag is the model's.
             let sample = unsafe { bsdf::<M>(raw) }.sample([xi_lobe, xi_theta, xi_phi]);

@@ -49,7 +49,7 @@ pub unsafe extern "C" fn hairis_level_name(to: *mut c_char, size: usize) -> usiz
 /// `hairis_model_count`.
 #[unsafe(no_mangle)]
 pub extern "C" fn hairis_model_count() -> u32 {
-    count(models::all().count())
+    count(ModelId::ALL.len())
 }
 
 /// `hairis_model_describe`.
@@ -134,7 +134,7 @@ pub unsafe extern "C" fn hairis_preset_name(
 /// The parameters of values.
 pub(crate) fn params_of(id: ModelId, values: &Values) -> Params {
     let mut params = Params {
-        model: models::index(id),
+        model: id as u32,
         given: 0,
         numbers: [0.0; NUMBERS],
     };
@@ -193,20 +193,16 @@ pub unsafe extern "C" fn hairis_params_init(
     let (Some(name), false) = (model, to.is_null()) else {
         return refuse(ARGUMENT, "model", &"to and model must not be NULL");
     };
-    let Some(first) = models::find(name, None) else {
-        let names = List(
-            models::all()
-                .filter(|id| id.is_default())
-                .map(ModelId::name),
-        );
+    let Some(first) = ModelId::find(name, None) else {
+        let names = List(ModelId::defaults_of_names().map(ModelId::name));
         return refuse(
             NAME,
             "model",
             &format_args!("model must be one of {names}, got \"{name}\""),
         );
     };
-    let Some(id) = models::find(name, word) else {
-        let of_name = models::all().filter(|id| id.name() == first.name());
+    let Some(id) = ModelId::find(name, word) else {
+        let of_name = ModelId::ALL.iter().filter(|id| id.name() == first.name());
         let words = List(of_name.filter_map(|id| Some(id.choice()?.1)));
         let (field, word) = (
             first.choice().map_or("choice", |(field, _)| field),
@@ -403,8 +399,8 @@ pub unsafe extern "C" fn hairis_material_init(
     });
     match made {
         // SAFETY: the caller's promise.
-        Some(Err(fault)) => unsafe { refuse_value(error, &fault) },
-        _ => OK,
+        Err(fault) => unsafe { refuse_value(error, &fault) },
+        Ok(()) => OK,
     }
 }
 
@@ -413,7 +409,7 @@ pub unsafe extern "C" fn hairis_material_init(
 pub unsafe extern "C" fn hairis_material_max_albedo(from: *const RawMaterial) -> f32 {
     // SAFETY: the caller's promise.
     let id = unsafe { model_of(from) };
-    let max = id.and_then(|id| {
+    let max = id.map(|id| {
         visit!(id, M, (from: *const RawMaterial) -> f32, {
             // SAFETY: the tag is the model's.
             unsafe { material::<M>(from) }.raw().max_albedo()

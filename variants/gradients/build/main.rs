@@ -1,7 +1,7 @@
 //! Prints the derivatives of every model of the list as Rust over lanes.
 //!
 //! Each model is traced, its graph is differentiated, and each operation of the result becomes a line. Levels that fuse have a
-//! graph of their own.
+//! graph of their own. Each model has a file, of which the library includes those in its list.
 
 mod order;
 
@@ -23,30 +23,24 @@ const LINTED: &str = "#[cfg(not(clippy))]";
 
 fn main() {
     println!("cargo::rerun-if-changed=build");
-    let mut source = Source::default();
-    for id in ModelId::ALL {
-        id.visit(Print(*id, &mut source));
-    }
     let dir = env::var("OUT_DIR").expect("cargo names a folder");
-    let path = Path::new(&dir).join("models.rs");
-    fs::write(path, source.text).expect("cargo's folder is written to");
+    let mut bodies = Vec::new();
+    for id in ModelId::ALL {
+        let text = id.visit(Print(*id, &mut bodies));
+        let path = Path::new(&dir).join(format!("{id:?}.rs"));
+        fs::write(path, text).expect("cargo's folder is written to");
+    }
 }
 
-/// Printed text, and the bodies so far: models that differ in their sampler share that of the value.
-#[derive(Default)]
-struct Source {
-    text: String,
-    bodies: Vec<String>,
-}
-
-/// Prints the derivatives of a model.
-struct Print<'a>(ModelId, &'a mut Source);
+/// Prints the derivatives of a model, after the bodies so far: models that differ in their sampler share that of the value.
+struct Print<'a>(ModelId, &'a mut Vec<String>);
 
 impl Visitor for Print<'_> {
-    type Output = ();
+    type Output = String;
 
-    fn visit<M: Registered>(self) {
-        let Self(id, source) = self;
+    fn visit<M: Registered>(self) -> String {
+        let Self(id, bodies) = self;
+        let mut text = String::new();
         let [exact, fused] = [Target::Exact, Target::Fused].map(Program::of::<M>);
         let names: Vec<String> = exact.material().places().collect();
         let mut module = format!(
@@ -70,13 +64,13 @@ impl Visitor for Print<'_> {
                 body(&fused, results, &inputs, &mut slots),
                 body(&exact, results, &inputs, &mut slots),
             );
-            let place = source.bodies.iter().position(|known| *known == body);
+            let place = bodies.iter().position(|known| *known == body);
             let place = place.unwrap_or_else(|| {
-                let place = source.bodies.len();
+                let place = bodies.len();
                 let (n, s) = (read.len(), slots.kinds.len());
                 let (numbers, has_pdf) = (slots.text(), call == "ValuePdf");
                 let _ = writeln!(
-                    source.text,
+                    text,
                     "#[derive(Debug)]\npub(crate) enum Body{place} {{}}\nimpl Body{place} {{\n\
                      pub(crate) const S: usize = {s};\npub(crate) const N: usize = {n};\n}}\n\
                      impl Rows<{s}, {n}> for Body{place} {{\nconst HAS_PDF: bool = {has_pdf};\n\
@@ -85,7 +79,7 @@ impl Visitor for Print<'_> {
                      finite: &mut f32x8) -> [L; OUTPUTS] {{\n#[cfg(clippy)]\nreturn [v[0]; OUTPUTS];\n{LINTED}\n\
                      {{\n{body}\n}}\n}}\n}}"
                 );
-                source.bodies.push(body);
+                bodies.push(body);
                 place
             });
             let _ = writeln!(
@@ -99,8 +93,7 @@ impl Visitor for Print<'_> {
             );
         }
         module.push_str(&parameters(&exact));
-        source.text.push_str(&module);
-        source.text.push_str("}\n");
+        text + &module + "}\n"
     }
 }
 

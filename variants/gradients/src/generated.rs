@@ -59,7 +59,12 @@ mod models {
     use super::{INPUTS, OUTPUTS, Rows, Slot, upper};
     use hairis::f32x8;
     use hairis::simd::Lanes;
-    include!(concat!(env!("OUT_DIR"), "/models.rs"));
+    macro_rules! sources {
+        ($($(#[$doc:meta])* $variant:ident: $model:ty;)*) => {
+            $(include!(concat!(env!("OUT_DIR"), "/", stringify!($variant), ".rs"));)*
+        };
+    }
+    hairis_variants::for_each_model! { sources }
 }
 
 /// Numbers with the lower 12 bits cleared. Asked for by lanes that do not fuse.

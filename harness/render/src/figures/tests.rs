@@ -212,7 +212,7 @@ fn hair_of_any_model_is_measured_with_its_own_samplers() {
     let folder = tempfile::TempDir::new().expect("a folder");
     let material = |melanin: &str| {
         let params = format!(r#"{{"beta_m":0.3,"beta_n":0.3,"melanin_amount":{melanin}}}"#);
-        let text = format!(r#"{{"model":"chiang","select":"by-channel","params":{params}}}"#);
+        let text = format!(r#"{{"model":"chiang","select":"mean","params":{params}}}"#);
         let spec = MaterialSpec::parse_all(&text).expect("legal")[0];
         Choice::of_material("mine", &spec, None).expect("its own sampler")
     };

@@ -133,7 +133,7 @@ fn hair_that_is_not_legal_is_refused_by_name() {
         ),
         (
             &["--material", "a/mine.json", "--sampler", "best"],
-            &["chiang", "best", "by-channel"],
+            &["chiang", "best", "mean"],
         ),
         (&["--set", "beta"], &["--set beta", "NAME=VALUE"]),
         (

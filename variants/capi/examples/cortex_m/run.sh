@@ -9,7 +9,7 @@ target=thumbv7em-none-eabihf
 cargo build -q --locked --release --target $target --target-dir "$to/rust" "$@"
 # Without std, and optimised for size as the host in Rust is.
 cargo rustc -q --locked --manifest-path ../../Cargo.toml --profile capi --config 'profile.capi.opt-level="s"' --no-default-features \
-  --features few --crate-type staticlib --target $target --target-dir "$to/c" "$@"
+  --crate-type staticlib --target $target --target-dir "$to/c" "$@"
 arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -std=c11 -Os -ffreestanding -nostdlib -Wall -Wextra \
   -pedantic -Werror -I../../include start.s host.c "$to/c/$target/capi/libhairis_capi.a" -Wl,--gc-sections -T memory.ld -o "$to/host-c"
 cp "$to/rust/$target/release/host" "$to/host-rust"
