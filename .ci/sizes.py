@@ -26,7 +26,6 @@ PACKETS = {
 # Weights of candidates, and packets of eight hits: the model is their only parameter.
 OF_MODEL = {"Weighs": "weigh_columns", "ProposalsOf": "propose8-points", "WeighOf": "weigh8-points"}
 MODELS = {
-    "Chiang<true>": "chiang-by-channel",
     "Chiang": "chiang",
     "KajiyaKay": "kajiya-kay",
     "Gaussian": "gaussian",
@@ -76,7 +75,6 @@ def entry(name):
 COPIES = {
     ("s", "kajiya-kay"): 1,
     ("s", "chiang"): 2,
-    ("s", "chiang-by-channel"): 3,
     ("s", "gaussian"): 1,
     ("s", "gaussian-matched"): 1,
     ("s", "cauchy"): 1,
