@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Promise: prose reads as sentences. Counts words per sentence and digits outside tables and code, and doc comments that
-begin with a headless pronoun, and follows links between files; fails where a count is outside its bound or a link is dead. `prose.py --list` prints the headless comments,
-`prose.py --sentences FILE` the sentences of one file, shortest first."""
+"""Promise: prose reads as sentences. Counts words per sentence and digits outside tables and code, doc comments that begin with a
+headless pronoun, and lines of README files, and follows links between files; fails where a count is outside its bound or a link is
+dead. `prose.py --list` prints the headless comments, `prose.py --sentences FILE` the sentences of one file, shortest first."""
 
 import os
 import re
@@ -119,6 +119,13 @@ def main():
         failed |= bad
         print(f"{name:<28}{total:>10}{median:>14.0f}{digits:>22.1f}{'  FAIL' if bad else ''}")
     print(f"{len(headless)} of {len(docs)} doc comments begin without a noun or a verb{'  FAIL' if headless else ''}")
+    for name in readmes:
+        directory = os.path.dirname(name)
+        most = 40 if directory else 80
+        lines = read[name].count("\n")
+        if name.endswith("README.md") and os.path.exists(os.path.join(directory, "Cargo.toml")) and lines > most:
+            failed = True
+            print(f"{name}: must have at most {most} lines, got {lines}  FAIL")
     dead = list(dead_links(tracked("*.md")))
     for name, target in dead:
         print(f"{name}: the link {target} leads nowhere  FAIL")

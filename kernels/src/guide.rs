@@ -14,9 +14,11 @@
 //!
 //! The examples are tests of the package.
 
-/// Chapters as Markdown files: each module is one of them.
+/// Chapters as Markdown files: each module is one of them. Targets of links in this documentation come before the paths that the files
+/// have for readers of the repository, and the first definition of a target counts.
 macro_rules! chapters {
     ($($chapter:ident = $file:literal;)*) => { $(
+        #[doc = "[cauchy]: crate::guide::cauchy\n[errata]: crate::guide::errata\n\n"]
         #[doc = include_str!($file)]
         pub mod $chapter {}
     )* };
