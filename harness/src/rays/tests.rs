@@ -192,7 +192,11 @@ fn rows_depend_on_the_seed_alone_and_black_maps_are_no_failures() {
     );
     let references = references.expect("valid");
     let subjects: Vec<RaySubject> = RaySubject::all().collect();
-    assert_eq!(subjects.len(), 13);
+    assert_eq!(
+        subjects.len(),
+        hairis_variants::ModelId::ALL.len() + 2,
+        "both bells have uniform directions"
+    );
     let on = |threads: usize, seed: u64| {
         let config = RaysConfig {
             seed,

@@ -137,13 +137,8 @@ fn chiang_by_absorption_melanin_and_color() {
         };
         let mut params = json!({"beta_m": p.beta_m, "beta_n": beta_n, "tilt": p.tilt, "eta": p.eta, "shifts": "small-angle"});
         params[field] = numbers;
-        for (word, selection) in [
-            ("mean", Selection::Mean),
-            ("by-channel", Selection::ByChannel),
-        ] {
-            let line =
-                json!({"model": "chiang", "select": word, "params": params, "wo": WO, "h": H});
-            assert_exact(&line, &ChiangConstants::new(&p, selection).prepare(WO, H));
-        }
+        let line = json!({"model": "chiang", "select": "mean", "params": params, "wo": WO, "h": H});
+        let exact = ChiangConstants::new(&p, Selection::Mean).prepare(WO, H);
+        assert_exact(&line, &exact);
     }
 }
