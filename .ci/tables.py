@@ -140,7 +140,7 @@ def gradients():
     """Derivatives of slices of hits over their values: ns per hit, and the ratio."""
     record = Record("gradients.csv")
     cells = in_runs(record)
-    models = {"Gaussian": "Gaussian", "GaussianMatched": "Gaussian, matched", "Cauchy": "Cauchy", "KajiyaKay": "Kajiya-Kay", "Chiang": "Chiang"}
+    models = {"Gaussian": "Gaussian", "GaussianMatched": "Gaussian, matched", "Cauchy": "Cauchy", "CauchyMatched": "Cauchy, matched", "KajiyaKay": "Kajiya-Kay", "Chiang": "Chiang"}
     levels = ["SSE2", "AVX2", "AVX-512"]
     rows = [[f"{word}: {call}", *(cells[model, call, level] for level in levels)]
             for model, word in models.items() for call in ("value", "value and density")]
