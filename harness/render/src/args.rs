@@ -8,6 +8,7 @@ use crate::numbers::Sequence;
 use crate::scalp::Scalp;
 use crate::scenes::Name;
 use crate::transport::{Integrator, Mis};
+use crate::tree::Meet;
 use clap::{Parser, Subcommand};
 use core::str::FromStr;
 use hairis_instruments::error::Error;
@@ -198,6 +199,9 @@ pub struct Place {
     /// How directions towards rectangular lights are drawn
     #[arg(long, value_enum, default_value_t)]
     pub rectangles: RectangleSampling,
+    /// Where rays meet and leave hair
+    #[arg(long, value_enum, default_value_t)]
+    pub meet: Meet,
 }
 
 /// Flags of the hair's material.

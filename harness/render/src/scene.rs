@@ -8,7 +8,7 @@ use crate::camera::Camera;
 use crate::geometry::Strands;
 use crate::lights::{LightSample, LightSample8, Rectangle, RectangleSampling, Seen, Sky, View};
 use crate::material::Hair;
-use crate::tree::{self, Ray, Tree};
+use crate::tree::{self, Meet, Ray, Tree};
 use glam::Vec3;
 use hairis::Vec3x8;
 use hairis::simd::f32x8;
@@ -89,6 +89,15 @@ impl Scene {
             };
         }
         self.tree.closest(&ray).map_or(met, Met::Hair)
+    }
+
+    /// Where rays leave the hair that a ray has hit.
+    #[inline]
+    pub(crate) fn origin(&self, ray: &Ray, hit: &tree::Hit) -> Vec3 {
+        match self.tree.meet() {
+            Meet::Axis => self.strands.position(hit.segment, hit.s),
+            Meet::Surface => ray.origin + hit.t * ray.direction,
+        }
     }
 
     /// Whether a ray to a light is blocked.

@@ -15,7 +15,7 @@ mod tests;
 mod traverse;
 mod triangles;
 
-pub use ray::{Hit, Ray, Skip};
+pub use ray::{Hit, Meet, Ray, Skip};
 pub use traverse::Visits;
 pub use triangles::MeshTree;
 
@@ -57,6 +57,7 @@ struct Boxes<B> {
     nodes: Vec<Node>,
     blocks: Vec<B>,
     level: Level,
+    meet: Meet,
 }
 
 impl<B: Leaf> Boxes<B> {
@@ -65,6 +66,7 @@ impl<B: Leaf> Boxes<B> {
             nodes,
             blocks,
             level: Level::detect(),
+            meet: Meet::default(),
         }
     }
 
@@ -120,6 +122,19 @@ impl Tree {
     #[must_use]
     pub fn at(self, level: Level) -> Self {
         Self(Boxes { level, ..self.0 })
+    }
+
+    /// The tree, whose hits are at another place of the strands.
+    #[must_use]
+    pub fn with_meet(self, meet: Meet) -> Self {
+        Self(Boxes { meet, ..self.0 })
+    }
+
+    /// Where hits are.
+    #[inline]
+    #[must_use]
+    pub const fn meet(&self) -> Meet {
+        self.0.meet
     }
 
     /// The nearest segment that the ray meets. Of equally near ones it is the one with the lowest number, so that images do

@@ -11,6 +11,7 @@ use hairis_render::numbers::Sequence;
 use hairis_render::scene::Met;
 use hairis_render::scenes::Name;
 use hairis_render::transport::{Integrator, Mis, Settings, cut_off};
+use hairis_render::tree::Meet;
 use hairis_variants::ModelId;
 
 /// Width and height of pictures of one strand.
@@ -214,13 +215,16 @@ fn clear() -> Hair {
 #[test]
 fn clear_hair_is_invisible_whatever_counts() {
     let scene = scene(Name::FurnaceIso, clear(), 1500, 16);
-    for mis in MIS {
+    let mut tubes = scene.clone();
+    tubes.tree = tubes.tree.with_meet(Meet::Surface);
+    let all = MIS.map(|mis| (&scene, mis));
+    for (scene, mis) in all.into_iter().chain([(&tubes, Mis::Both)]) {
         let settings = Settings {
             mis,
             ..Settings::default()
         };
         for channel in 0..3 {
-            let got = mean(&scene, &settings, 4, 16, channel);
+            let got = mean(scene, &settings, 4, 16, channel);
             let exact = (got.value - 1.0).abs() < 1e-4;
             assert!(
                 exact || got.z_score(1.0).abs() < 4.0,

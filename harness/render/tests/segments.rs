@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use hairis_render::geometry::{Builder, Strands};
-use hairis_render::tree::{Ray, Tree};
+use hairis_render::tree::{Meet, Ray, Tree};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
@@ -37,6 +37,31 @@ fn offset_has_the_sign_of_the_kernels() {
             (hit.t - 2.0).abs() < 1e-6 && (hit.s - 0.75).abs() < 1e-6,
             "{hit:?}"
         );
+    }
+}
+
+#[test]
+fn tubes_are_met_where_rays_enter_them() {
+    let strands = cone(Vec3::NEG_X, Vec3::X, [0.1, 0.1]);
+    let tree = Tree::build(&strands)
+        .expect("a small scene")
+        .with_meet(Meet::Surface);
+    for (slant, z) in [(0.0, 0.0_f32), (0.0, 0.06), (2.0, -0.08), (-3.0, 0.099)] {
+        let direction = Vec3::new(slant, -1.0, 0.0).normalize();
+        let through = Vec3::new(0.2, 0.0, z);
+        let hit = tree
+            .closest(&Ray::new(through - 2.0 * direction, direction))
+            .expect("within the radius");
+        let point = through + (hit.t - 2.0) * direction;
+        let enters = Vec3::new(point.x, (0.01 - z * z).sqrt(), z);
+        assert!(point.distance(enters) < 1e-5, "{slant} {z}: {point}");
+        // From there, and from within, the tube is not met again.
+        for start in [point, point + 0.001 * direction] {
+            for to in [direction, Vec3::Y, Vec3::new(0.9, 0.3, -0.3).normalize()] {
+                let ray = Ray::new(start + 1e-4 * to, to);
+                assert_eq!(tree.closest(&ray), None, "{start} {to}");
+            }
+        }
     }
 }
 

@@ -69,10 +69,12 @@ impl Ground {
             size,
             turn: flags.turn,
         };
+        let scene = scenes::build(flags.scene, parts)?;
         Ok(Scene {
             backdrop: flags.backdrop.map(glam::Vec3::splat),
             rectangle_sampling: flags.rectangles,
-            ..scenes::build(flags.scene, parts)?
+            tree: scene.tree.with_meet(flags.meet),
+            ..scene
         })
     }
 }

@@ -102,7 +102,7 @@ impl Point {
     fn new(scene: &Scene, ray: &Ray, hit: tree::Hit, key: u64) -> Self {
         let wo = -ray.direction;
         let frame = FiberFrame::from_tangent_normal(scene.strands.tangent(hit.segment, hit.s), wo);
-        let origin = scene.strands.position(hit.segment, hit.s);
+        let origin = scene.origin(ray, &hit);
         let (local, eight) = (
             Hit::new(frame.to_local(wo), hit.h),
             FiberFrame8::splat(&frame),

@@ -176,8 +176,7 @@ impl Packet {
         let wo = Vec3x8::from(wo);
         let frames = FiberFrame8::from_tangents_normals(&tangents.into(), &wo);
         let h = f32x8::new(core::array::from_fn(|lane| at(lane).1.h));
-        let origins =
-            core::array::from_fn(|lane| scene.strands.position(at(lane).1.segment, at(lane).1.s));
+        let origins = core::array::from_fn(|lane| scene.origin(&at(lane).0.ray, &at(lane).1));
         let hits = Hit8::new(frames.to_local(&wo), h);
         Self {
             frames,
@@ -304,7 +303,7 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
     }
 }
 
-/// A ray from the axis of a fibre, in a direction of inclination `cos_theta`.
+/// A ray that leaves a fibre, in a direction of inclination `cos_theta`.
 #[inline]
 pub(super) fn leave(
     scene: &Scene,

@@ -1,7 +1,7 @@
 //! Eight segments, and which of them a ray meets.
 
 use super::build::slack;
-use super::ray::{Hit, Ray, Spread};
+use super::ray::{Hit, Meet, Ray, Spread};
 use super::split::Primitive;
 use crate::geometry::{Bounds, Strands};
 use glam::Vec3;
@@ -131,7 +131,13 @@ impl Leaf for Block {
         ];
         let distance_sq = axis[0].mul_add(axis[0], axis[1].mul_add(axis[1], axis[2] * axis[2]));
         let radius = s.mul_add(self.widening.lanes(), self.radius.lanes());
-        let t = s.mul_add(edge_along, from_along);
+        let mut t = s.mul_add(edge_along, from_along);
+        if ray.meet == Meet::Surface {
+            // Half of the chord through the tube, by its length across over the sine between ray and axis.
+            let inside = radius.mul_sub(radius, distance_sq).max(L::splat(0.0));
+            let along_sq = edge_along.mul_add(edge_along, edge_sq);
+            t = t - (inside * along_sq / edge_sq.max(L::splat(1e-30))).sqrt();
+        }
         let within = L::and(L::splat(0.0).lt(t), t.lt(L::splat(limit)));
         let met = L::and(distance_sq.lt(radius * radius), within);
         (bits::<L>(met), [t.store(), s.store()])

@@ -1,5 +1,6 @@
 //! Rays and hits.
 
+use clap::ValueEnum;
 use glam::Vec3;
 use hairis::simd::Lanes;
 
@@ -27,6 +28,16 @@ impl Ray {
             skip: None,
         }
     }
+}
+
+/// Where rays meet hair, and where those that it scatters leave it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Meet {
+    /// On the axis: a hair is a ribbon that faces the ray
+    #[default]
+    Axis,
+    /// On the surface of a round tube, which rays meet from outside alone
+    Surface,
 }
 
 /// Hits to ignore: a ray starts on the axis of a fibre, and would meet the very fibre that it leaves.
@@ -58,7 +69,7 @@ impl Skip {
 /// Intersection of a ray with a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Distance along the ray to the place nearest to the axis.
+    /// Distance along the ray to the place nearest to the axis, or to the surface: see [`Meet`].
     pub t: f32,
     /// The segment.
     pub segment: u32,
@@ -81,11 +92,12 @@ pub(super) struct Spread<L> {
     pub(super) origin_inverse: [L; 3],
     /// Along which axes the ray goes down, as 0 or 1.
     pub(super) negative: [usize; 3],
+    pub(super) meet: Meet,
 }
 
 impl<L: Lanes> Spread<L> {
     #[inline(always)]
-    pub(super) fn new(ray: &Ray) -> Self {
+    pub(super) fn new(ray: &Ray, meet: Meet) -> Self {
         let (o, d) = (ray.origin, ray.direction);
         let inverse = [reciprocal(d.x), reciprocal(d.y), reciprocal(d.z)];
         Self {
@@ -106,6 +118,7 @@ impl<L: Lanes> Spread<L> {
                 usize::from(inverse[1] < 0.0),
                 usize::from(inverse[2] < 0.0),
             ],
+            meet,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::block::{Block, Leaf as _};
 use super::ray::Spread;
-use super::{Hit, Ray, Skip, Tree, TreeError};
+use super::{Hit, Meet, Ray, Skip, Tree, TreeError};
 use crate::geometry::{Builder, Flattening, Groom, Kind, Strands};
 use glam::Vec3;
 use hairis::simd::{Kernel, Lanes, Level, f32x8};
@@ -17,7 +17,8 @@ impl Kernel for Alone<'_> {
 
     #[inline(always)]
     fn run<L: Lanes<Stored = f32x8>>(self) -> Self::Output {
-        self.0.meet(&Spread::<L>::new(self.1), f32::INFINITY)
+        self.0
+            .meet(&Spread::<L>::new(self.1, Meet::Axis), f32::INFINITY)
     }
 }
 

@@ -92,7 +92,7 @@ fn search<L: Lanes<Stored = f32x8>, B: Leaf, C: Count, const ANY: bool>(
     ray: &Ray,
     visits: &mut C,
 ) -> Option<B::Hit> {
-    let spread = Spread::<L>::new(ray);
+    let spread = Spread::<L>::new(ray, tree.meet);
     // No segment has a number below 0: what is at `t_max` itself is not met.
     let mut best = Best {
         t: ray.t_max,

@@ -23,6 +23,7 @@ fn parts_of_other_runs_are_refused_by_name() {
             &["--rectangles", "area"],
             "rectangles=SolidAngle, expected rectangles=Area",
         ),
+        (&["--meet", "surface"], "meet=Axis, expected meet=Surface"),
         (&["--no-multiple"], "multiple=true, expected multiple=false"),
     ] {
         let refused = refuse(&folder, &[&["render"], &flags[..], &SMALL, other].concat());

@@ -62,6 +62,7 @@ pub(super) fn describe(
         turn,
         backdrop,
         rectangles,
+        meet,
         // In the environment.
         env: _,
         layer: _,
@@ -98,7 +99,7 @@ pub(super) fn describe(
         ),
         format!("strands={strands} import={file:016x} scale={scale:?} radius={radius:?} up={up:?}"),
         format!("curve={curve:?} head={mesh:016x} head_scale={head_scale:?} scalp={scalp:?}"),
-        format!("follow={follow} spread={spread} rectangles={rectangles:?}"),
+        format!("follow={follow} spread={spread} rectangles={rectangles:?} meet={meet:?}"),
         format!("integrator={integrator:?} xi={sequence:?} seed={seed} mis={mis:?}"),
         format!("depth={depth:?} roulette={roulette} multiple={multiple} aa={rays}"),
         build(),
