@@ -50,7 +50,8 @@ def main():
     gap = np.ones((height, 4, 3))
     both = np.hstack([pictures[0].mean(0), gap, pictures[1].mean(0)])
     mi.util.write_bitmap(picture, np.float32(both), write_async=False, quality=85)
-    return np.all(np.abs(difference) < 3 * error)
+    # Mitsuba moves the start of a ray off the surface by up to half of the radius of these hairs.
+    return np.all(np.abs(difference) < 0.003 * mine + 3 * error)
 
 
 if __name__ == "__main__":
