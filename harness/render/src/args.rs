@@ -199,7 +199,7 @@ pub struct Place {
     /// How directions towards rectangular lights are drawn
     #[arg(long, value_enum, default_value_t)]
     pub rectangles: RectangleSampling,
-    /// Where rays meet and leave hair
+    /// Place of hair that rays meet and leave
     #[arg(long, value_enum, default_value_t)]
     pub meet: Meet,
 }

@@ -91,7 +91,7 @@ impl Scene {
         self.tree.closest(&ray).map_or(met, Met::Hair)
     }
 
-    /// Where rays leave the hair that a ray has hit.
+    /// The start of rays that leave the hair that a ray has hit.
     #[inline]
     pub(crate) fn origin(&self, ray: &Ray, hit: &tree::Hit) -> Vec3 {
         match self.tree.meet() {

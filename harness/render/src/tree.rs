@@ -130,7 +130,7 @@ impl Tree {
         Self(Boxes { meet, ..self.0 })
     }
 
-    /// Where hits are.
+    /// The place of hits.
     #[inline]
     #[must_use]
     pub const fn meet(&self) -> Meet {

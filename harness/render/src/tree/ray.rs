@@ -30,7 +30,7 @@ impl Ray {
     }
 }
 
-/// Where rays meet hair, and where those that it scatters leave it.
+/// The place of hair that rays meet, and that those that it scatters leave.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Meet {
     /// On the axis: a hair is a ribbon that faces the ray
