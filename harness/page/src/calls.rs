@@ -4,7 +4,7 @@ use crate::memory::COLUMN;
 use crate::slot::Slot;
 use glam::Vec3;
 use hairis::simd::{LaneStruct, Path, f32x8};
-use hairis::{Gaussian, Hit, Matched, Vec3x8};
+use hairis::{Hit, Vec3x8};
 use hairis_variants::{ModelId, Registered, Visitor};
 
 /// Columns that a call reads and writes.

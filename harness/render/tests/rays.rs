@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use hairis_render::geometry::{Flattening, Groom, Kind, Strands};
-use hairis_render::tree::{Ray, Skip, Tree, Visits};
+use hairis_render::tree::{Meet, Ray, Skip, Tree, Visits};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use std::time::Instant;
@@ -41,7 +41,12 @@ fn rays(strands: &Strands, tree: &Tree, side: usize, bounces: usize) -> [Vec<Ray
                     .tangent(hit.segment, hit.s)
                     .cross(direction)
                     .length();
-                let skip = Skip::leaving(hit.strand, strands.radius(hit.segment, hit.s), cos_theta);
+                let skip = Skip::leaving(
+                    hit.strand,
+                    strands.radius(hit.segment, hit.s),
+                    cos_theta,
+                    Meet::Axis,
+                );
                 Ray {
                     skip: Some(skip),
                     ..Ray::new(strands.position(hit.segment, hit.s), direction)

@@ -42,11 +42,18 @@ fn offset_has_the_sign_of_the_kernels() {
 
 #[test]
 fn tubes_are_met_where_rays_enter_them() {
-    let strands = cone(Vec3::NEG_X, Vec3::X, [0.1, 0.1]);
-    let tree = Tree::build(&strands)
-        .expect("a small scene")
-        .with_meet(Meet::Surface);
-    for (slant, z) in [(0.0, 0.0_f32), (0.0, 0.06), (2.0, -0.08), (-3.0, 0.099)] {
+    // Joints are nowhere special: some of the rays pass close to one.
+    let mut builder = Builder::default();
+    let nodes = [-2.0, -0.5, 0.0, 0.2, 0.25, 0.5, 2.0].map(|x| (Vec3::new(x, 0.0, 0.0), 0.1));
+    builder.push(nodes).expect("a tube");
+    let tree = Tree::build(&builder.finish()).expect("a small scene");
+    let tree = tree.with_meet(Meet::Surface);
+    let slants = [0.0, 0.5, 1.0, 2.0, -3.0, -5.0];
+    let places = [0.0_f32, 0.06, -0.099];
+    for (slant, z) in slants
+        .into_iter()
+        .flat_map(|slant| places.map(|z| (slant, z)))
+    {
         let direction = Vec3::new(slant, -1.0, 0.0).normalize();
         let through = Vec3::new(0.2, 0.0, z);
         let hit = tree

@@ -314,7 +314,12 @@ pub(super) fn leave(
 ) -> Ray {
     let radius = scene.strands.radius(hit.segment, hit.s);
     Ray {
-        skip: Some(Skip::leaving(hit.strand, radius, cos_theta)),
+        skip: Some(Skip::leaving(
+            hit.strand,
+            radius,
+            cos_theta,
+            scene.tree.meet(),
+        )),
         ..Ray::new(origin, direction)
     }
 }

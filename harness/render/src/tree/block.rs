@@ -121,25 +121,40 @@ impl Leaf for Block {
         // The place nearest to the ray.
         let edge_sq = edge[0].mul_add(edge[0], edge[1].mul_add(edge[1], edge[2] * edge[2]));
         let start_edge = start[0].mul_add(edge[0], start[1].mul_add(edge[1], start[2] * edge[2]));
-        let s = (start_edge / edge_sq.max(L::splat(1e-30)))
-            .max(L::splat(0.0))
-            .min(L::splat(1.0));
-        let axis = [
-            s.mul_sub(edge[0], start[0]),
-            s.mul_sub(edge[1], start[1]),
-            s.mul_sub(edge[2], start[2]),
-        ];
-        let distance_sq = axis[0].mul_add(axis[0], axis[1].mul_add(axis[1], axis[2] * axis[2]));
+        let on_line = start_edge / edge_sq.max(L::splat(1e-30));
+        let s = on_line.max(L::splat(0.0)).min(L::splat(1.0));
+        let distance_sq_at = |s: L| {
+            let axis = [
+                s.mul_sub(edge[0], start[0]),
+                s.mul_sub(edge[1], start[1]),
+                s.mul_sub(edge[2], start[2]),
+            ];
+            axis[0].mul_add(axis[0], axis[1].mul_add(axis[1], axis[2] * axis[2]))
+        };
+        let distance_sq = distance_sq_at(s);
         let radius = s.mul_add(self.widening.lanes(), self.radius.lanes());
         let mut t = s.mul_add(edge_along, from_along);
+        let mut met = distance_sq.lt(radius * radius);
         if ray.meet == Meet::Surface {
-            // Half of the chord through the tube, by its length across over the sine between ray and axis.
-            let inside = radius.mul_sub(radius, distance_sq).max(L::splat(0.0));
             let along_sq = edge_along.mul_add(edge_along, edge_sq);
-            t = t - (inside * along_sq / edge_sq.max(L::splat(1e-30))).sqrt();
+            // The tube without ends is entered half of its chord before the place nearest to its line: its segments agree on where.
+            let inside = radius
+                .mul_sub(radius, distance_sq_at(on_line))
+                .max(L::splat(0.0));
+            let half = (inside * along_sq / edge_sq.max(L::splat(1e-30))).sqrt();
+            let enters = on_line.mul_add(edge_along, from_along) - half;
+            met = L::and(met, L::splat(0.0).lt(enters));
+            // The segment is entered there, or through the plane at one of its ends.
+            let foot = on_line - half * edge_along / along_sq;
+            let end = foot.max(L::splat(0.0)).min(L::splat(1.0));
+            let is_beyond = L::splat(0.0).lt((end - foot).abs());
+            let plane = enters + (end - foot) * along_sq / edge_along;
+            // A ray that has passed the plane meets the round end, at the place nearest to it.
+            let at_end = L::select(plane.lt(enters), t, plane.min(t));
+            t = L::select(is_beyond, at_end, enters);
         }
         let within = L::and(L::splat(0.0).lt(t), t.lt(L::splat(limit)));
-        let met = L::and(distance_sq.lt(radius * radius), within);
+        let met = L::and(met, within);
         (bits::<L>(met), [t.store(), s.store()])
     }
 

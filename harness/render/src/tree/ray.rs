@@ -40,7 +40,7 @@ pub enum Meet {
     Surface,
 }
 
-/// Hits to ignore: a ray starts on the axis of a fibre, and would meet the very fibre that it leaves.
+/// Hits to ignore: a ray starts on the axis or the surface of a fibre, and would meet the very fibre that it leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Skip {
     /// Hits of this strand are ignored ...
@@ -52,16 +52,20 @@ pub struct Skip {
 impl Skip {
     /// Ignores a strand until the ray has left it.
     ///
-    /// `before = 1.5 radius / max(cos_theta, 0.01)`
+    /// `before = 1.5 radius / max(cos_theta, 0.01)` from the axis; from the surface 2.5 radii, as a chord has up to two.
     ///
     /// The image does not depend on the factor from 1.5 to 10; with 0, strands shadow themselves and lose 0.5 %. Whole
     /// strands without limit would take the shadows from curls; segments alone would be met again at their joints.
     #[inline]
     #[must_use]
-    pub fn leaving(strand: u32, radius: f32, cos_theta: f32) -> Self {
+    pub fn leaving(strand: u32, radius: f32, cos_theta: f32, from: Meet) -> Self {
+        let radii = match from {
+            Meet::Axis => 1.5,
+            Meet::Surface => 2.5,
+        };
         Self {
             strand,
-            before: 1.5 * radius / cos_theta.max(0.01),
+            before: radii * radius / cos_theta.max(0.01),
         }
     }
 }

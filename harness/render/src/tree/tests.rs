@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
 /// One block, alone.
-struct Alone<'a>(&'a Block, &'a Ray);
+struct Alone<'a>(&'a Block, &'a Ray, Meet);
 
 impl Kernel for Alone<'_> {
     type Output = (u32, [f32x8; 2]);
@@ -18,7 +18,7 @@ impl Kernel for Alone<'_> {
     #[inline(always)]
     fn run<L: Lanes<Stored = f32x8>>(self) -> Self::Output {
         self.0
-            .meet(&Spread::<L>::new(self.1, Meet::Axis), f32::INFINITY)
+            .meet(&Spread::<L>::new(self.1, self.2), f32::INFINITY)
     }
 }
 
@@ -26,7 +26,7 @@ impl Kernel for Alone<'_> {
 fn search_all(tree: &Tree, ray: &Ray) -> Option<Hit> {
     let mut best: Option<Hit> = None;
     for block in &tree.0.blocks {
-        let (met, [t, s]) = tree.0.level.run(Alone(block, ray));
+        let (met, [t, s]) = tree.0.level.run(Alone(block, ray, tree.meet()));
         for lane in (0..8).filter(|lane| met >> lane & 1 == 1) {
             let hit = block.hit(lane, ray, t.as_array()[lane], s.as_array()[lane]);
             let ignored = ray
@@ -121,7 +121,12 @@ fn ray(strands: &Strands, segments: &[(u32, u32)], numbers: &mut Numbers) -> Ray
         _ => {
             let across = strands.tangent(segment, s).cross(direction).length();
             Ray {
-                skip: Some(Skip::leaving(strand, strands.radius(segment, s), across)),
+                skip: Some(Skip::leaving(
+                    strand,
+                    strands.radius(segment, s),
+                    across,
+                    Meet::Axis,
+                )),
                 ..Ray::new(target, direction)
             }
         }
@@ -141,8 +146,10 @@ fn tree_finds_what_a_search_of_all_finds() {
     let strands = thicket();
     let segments: Vec<(u32, u32)> = strands.numbers().collect();
     assert_eq!(segments.len(), 2000, "segments");
-    for level in Level::available() {
-        let tree = Tree::build(&strands).expect("a small scene").at(level);
+    let levels = Level::available().map(|level| (level, Meet::Axis));
+    for (level, meet) in levels.chain([(Level::detect(), Meet::Surface)]) {
+        let tree = Tree::build(&strands).expect("a small scene");
+        let tree = tree.at(level).with_meet(meet);
         let mut numbers = Numbers::new(2);
         let (mut hits, mut beyond) = (0, 0);
         for i in 0..10_000 {
@@ -162,7 +169,7 @@ fn tree_finds_what_a_search_of_all_finds() {
         }
         assert!(
             (5_000..9_900).contains(&hits) && beyond > 500,
-            "{hits} hits, {beyond} beyond limits on {level}"
+            "{hits} hits, {beyond} beyond limits on {level}, {meet:?}"
         );
     }
 }
