@@ -5,13 +5,16 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
-dir=$(realpath -m "${1:-$target/dist}")
-[ ! -e "$dir" ] || [ -f "$dir/SHA256SUMS" ] || { echo "$dir must be new or an earlier release, got another folder" >&2; exit 2; }
+to=$(realpath -m "${1:-$target/dist}")
+[ ! -e "$to" ] || [ -f "$to/SHA256SUMS" ] || { echo "$to must be new or an earlier release, got another folder" >&2; exit 2; }
+git diff --quiet HEAD || { echo "the tree must be that of a commit, got changes: git status" >&2; exit 2; }
 version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
-rm -rf "$dir"
-mkdir -p "$dir/crates"
 stage=$(mktemp -d)
 trap 'rm -rf "$stage"' EXIT
+# What goes into the folder when all of it is there.
+dir=$stage/dist
+mkdir -p "$dir/crates"
+quietly() { "$@" > "$stage/log" 2>&1 || { cat "$stage/log" >&2; return 1; }; }
 # An archive of the folder $stage/NAME: the same bytes for the same contents.
 pack() { # pack NAME
   cp LICENSE-* "$stage/$1"
@@ -23,10 +26,12 @@ pack() { # pack NAME
 cp "$target"/package/*.crate "$dir/crates"
 
 c=hairis-c-$version-$(uname -m)-linux
-DESTDIR=$stage/$c variants/capi/install.sh / > /dev/null
+DESTDIR=$stage/$c quietly variants/capi/install.sh /
 # Found beside itself, wherever the archive is unpacked.
 sed -i 's|^prefix=.*|prefix=${pcfiledir}/../..|' "$stage/$c/lib/pkgconfig/hairis.pc"
-cp -r variants/capi/examples variants/capi/docs variants/capi/README.md "$stage/$c"
+# The examples that need the library alone.
+mkdir "$stage/$c/examples"
+cp -r variants/capi/examples/*.c variants/capi/examples/*.cpp variants/capi/examples/mitsuba "$stage/$c/examples"
 pack "$c"
 
 python=$target/hosts/venv/bin
@@ -35,17 +40,18 @@ python=$target/hosts/venv/bin
 
 shaders=hairis-shaders-$version
 HAIRIS=$(.ci/release.sh)/hairis
-"$HAIRIS" shader --out "$stage/$shaders" > /dev/null
+quietly "$HAIRIS" shader --out "$stage/$shaders"
 pack "$shaders"
 
 # One quick test in the browser: the page is built as there.
-HAIRIS=$HAIRIS .ci/page.sh times > /dev/null
+HAIRIS=$HAIRIS quietly .ci/page.sh times
 cp -r "$target/page" "$stage/hairis-page-$version"
 pack "hairis-page-$version"
 
+commit=$(git rev-parse --short HEAD)
 cd "$dir"
 {
-  echo "hairis $version, commit $(git -C "$OLDPWD" rev-parse --short HEAD)"
+  echo "hairis $version, commit $commit"
   find . -type f ! -name CONTENTS -printf '%P\n' | LC_ALL=C sort | while read -r file; do
     printf '\n%s, %s bytes\n' "$file" "$(stat -c %s "$file")"
     case $file in
@@ -57,4 +63,7 @@ cd "$dir"
 find . -type f ! -name SHA256SUMS -printf '%P\n' | LC_ALL=C sort | xargs sha256sum > SHA256SUMS
 sha256sum -c --quiet SHA256SUMS
 grep ' bytes$' CONTENTS
-echo "$dir has $(wc -l < SHA256SUMS) files, which CONTENTS lists"
+rm -rf "$to"
+mkdir -p "$(dirname "$to")"
+mv "$dir" "$to"
+echo "$to has what CONTENTS lists, with checksums in SHA256SUMS"

@@ -78,8 +78,8 @@ part AddressSanitizer
 watched=(-fsanitize=address "$work/asan/$host/capi/libhairis_capi.a" -lm)
 build_c "$capi/tests/bits.c" "$work/bits-asan" "${watched[@]}"
 build_c "$capi/tests/refusals.c" "$work/refusals-asan" "${watched[@]}"
-HAIRIS_FEW=1 "$work/bits-asan" "$work/answers.bin" | tee "$work/few.log"
-grep -q '; 30 are not in the library' "$work/few.log" || { echo "FAIL the small library has other models"; exit 1; }
+HAIRIS_MAY_LACK=1 "$work/bits-asan" "$work/answers.bin" | tee "$work/small.log"
+grep -q '; 30 are not in the library' "$work/small.log" || { echo "FAIL the small library has other models"; exit 1; }
 "$work/refusals-asan"
 reported "$work/bits-asan" "$work/answers.bin" short
 

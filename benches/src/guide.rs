@@ -17,5 +17,6 @@ pub mod speed {}
 #[doc = include_str!("guide/hand.md")]
 pub mod hand {}
 
+#[doc = "[gradients]: https://docs.rs/hairis-gradients\n\n"]
 #[doc = include_str!("guide/hits.md")]
 pub mod hits {}

@@ -329,7 +329,8 @@ fn presets_converge_and_scaled_hair_never_shines() {
 
 #[test]
 fn all_samplers_are_tested() {
-    let tested = ["uniform", "published", "published", "matched"];
-    assert_eq!(samplers("gaussian")[..4], tested);
+    let mut others = samplers("gaussian");
+    others.retain(|word| !["matched-5", "matched-25"].contains(word));
+    assert_eq!(others, ["uniform", "published", "published", "matched"]);
     assert_ne!(Integrator::Direct, Integrator::Path);
 }

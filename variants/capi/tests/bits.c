@@ -106,7 +106,7 @@ static int material(hairis_material *to) {
   uint32_t energy = word();
   snprintf(place, sizeof place, "%s %s %s, energy %u", model, choice, preset, (unsigned)energy);
   hairis_status status = hairis_params_init(&params, model, choice[0] ? choice : NULL, preset, &error);
-  if (status == HAIRIS_NAME && getenv("HAIRIS_FEW")) return 0;
+  if (status == HAIRIS_NAME && getenv("HAIRIS_MAY_LACK")) return 0;
   if (status != HAIRIS_OK || hairis_material_init(to, &params, energy, &error) != HAIRIS_OK) fail(error.message);
   return 1;
 }

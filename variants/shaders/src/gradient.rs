@@ -176,8 +176,8 @@ impl Function {
         self.differentiate(false)
     }
 
-    /// As [`gradient`](Self::gradient), with products of derivatives added in one operation, which a target must round once. That
-    /// is a seventh fewer operations. On a GPU, derivatives of materials lost digits by it.
+    /// As [`gradient`](Self::gradient), with products of derivatives added in one operation, for fewer of them. A target must round it
+    /// once: it is not for GPUs, which may take it apart.
     ///
     /// # Panics
     ///
