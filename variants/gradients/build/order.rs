@@ -84,18 +84,7 @@ pub(crate) fn order(gradient: &Function, rows: &[u32]) -> Vec<u32> {
 
 /// Operations that these rows need, in the order of the graph.
 fn needed(graph: &Graph, rows: &[u32]) -> Vec<u32> {
-    let mut is_needed = vec![false; graph.nodes().len()];
-    for row in rows {
-        is_needed[*row as usize] = true;
-    }
-    for (place, node) in graph.nodes().iter().enumerate().rev() {
-        if is_needed[place] {
-            for operand in node.operands() {
-                is_needed[*operand as usize] = true;
-            }
-        }
-    }
-    let places = (0_u32..).zip(graph.nodes()).zip(is_needed);
+    let places = (0_u32..).zip(graph.nodes()).zip(graph.needed(rows));
     let places = places.filter(|((_, node), is_needed)| *is_needed && node.is_computed());
     places.map(|((place, _), _)| place).collect()
 }

@@ -64,17 +64,7 @@ impl Function {
         graph: &Graph,
         results: &[u32],
     ) -> Self {
-        let mut is_used = vec![false; graph.nodes().len()];
-        for result in results {
-            is_used[*result as usize] = true;
-        }
-        for (place, node) in graph.nodes().iter().enumerate().rev() {
-            if is_used[place] {
-                for operand in node.operands() {
-                    is_used[*operand as usize] = true;
-                }
-            }
-        }
+        let is_used = graph.needed(results);
         let (mut kept, mut places) = (Graph::default(), vec![0; is_used.len()]);
         for (node, place) in graph.nodes().iter().zip(0_u32..) {
             if is_used[place as usize] {

@@ -159,6 +159,27 @@ impl Graph {
         self.origins[place as usize]
     }
 
+    /// Whether each node is one of these, or read on the way to one of them.
+    ///
+    /// # Panics
+    ///
+    /// If there is no node at one of these places.
+    #[must_use]
+    pub fn needed(&self, places: &[u32]) -> Vec<bool> {
+        let mut is_needed = vec![false; self.nodes.len()];
+        for place in places {
+            is_needed[*place as usize] = true;
+        }
+        for (place, node) in self.nodes.iter().enumerate().rev() {
+            if is_needed[place] {
+                for operand in node.operands() {
+                    is_needed[*operand as usize] = true;
+                }
+            }
+        }
+        is_needed
+    }
+
     /// Sets the stage of operations that are added.
     pub(crate) fn set_stage(&mut self, sentence: &'static str) {
         self.stage = Some(sentence);
