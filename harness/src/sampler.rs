@@ -53,8 +53,6 @@ impl Sampler {
         }
         all
     };
-    /// The sampler whose weights vary least.
-    pub(crate) const BEST: Self = Self::ALL[COUNT - 1];
 
     /// Name in reports and in rows.
     pub(crate) fn name(self) -> &'static str {

@@ -20,8 +20,8 @@ use crate::sampler::Sampler;
 use hairis_instruments::stats::Estimate;
 use wide::f64x8;
 
-/// Source of the directions.
-pub(crate) const SOURCE: Sampler = Sampler::BEST;
+/// Source of the directions: the sampler whose weights vary least, the last of the list.
+pub(crate) const SOURCE: Sampler = Sampler::ALL[Sampler::ALL.len() - 1];
 
 /// Sums of the weight that counts for F, and of `m w r`, `m w r^2` and `m w r ln r`; the largest is an `r`.
 pub(super) type PerfectTally = Sums<4>;
