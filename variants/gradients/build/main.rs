@@ -3,8 +3,9 @@
 //! Each model is traced, its graph is differentiated, and each operation of the result becomes a line. Levels that fuse have a
 //! graph of their own. Each model has a file, of which the library includes those in its list.
 
-mod order;
+mod chunks;
 
+use chunks::Chunks;
 use core::fmt::Write as _;
 use hairis::simd::trace::Op;
 use hairis_shaders::{Call, Function, Kind, Program, Target};
@@ -18,6 +19,10 @@ use std::path::Path;
 const RESULTS: usize = 4;
 /// Numbers of a hit and a direction: `wo`, `h`, `wi`.
 const ARGUMENTS: usize = 7;
+/// Numbers that each hit reads: these, and a weight per result. A packet keeps them first.
+const INPUTS: usize = ARGUMENTS + RESULTS;
+/// Numbers that are written: the results, and a derivative per argument. A packet keeps them second.
+const OUTPUTS: usize = RESULTS + ARGUMENTS;
 /// Lints take minutes for a hundred thousand generated lines, and find nothing that somebody could mend.
 const LINTED: &str = "#[cfg(not(clippy))]";
 
@@ -59,11 +64,10 @@ impl Visitor for Print<'_> {
                 numbers: names.len(),
                 read: &read,
             };
-            let body = format!(
-                "if const {{ L::FUSES }} {{\n{}}} else {{\n{}}}",
-                body(&fused, results, &inputs, &mut slots),
-                body(&exact, results, &inputs, &mut slots),
-            );
+            let [(fused, kept), (exact, also_kept)] =
+                [&fused, &exact].map(|gradient| body(gradient, results, &inputs, &mut slots));
+            let kept = kept.max(also_kept);
+            let body = format!("if const {{ L::FUSES }} {{\n{fused}}} else {{\n{exact}}}");
             let place = bodies.iter().position(|known| *known == body);
             let place = place.unwrap_or_else(|| {
                 let place = bodies.len();
@@ -72,12 +76,11 @@ impl Visitor for Print<'_> {
                 let _ = writeln!(
                     text,
                     "#[derive(Debug)]\npub(crate) enum Body{place} {{}}\nimpl Body{place} {{\n\
-                     pub(crate) const S: usize = {s};\npub(crate) const N: usize = {n};\n}}\n\
-                     impl Rows<{s}, {n}> for Body{place} {{\nconst HAS_PDF: bool = {has_pdf};\n\
+                     pub(crate) const S: usize = {s};\npub(crate) const N: usize = {n};\npub(crate) const K: usize = {kept};\n}}\n\
+                     impl Rows<{s}, {n}, {kept}> for Body{place} {{\nconst HAS_PDF: bool = {has_pdf};\n\
                      const SLOTS: &[Slot; {s}] = &[{numbers}];\n#[inline(always)]\n\
-                     fn rows<L: Lanes<Stored = f32x8>>(c: &[f32x8; {s}], v: [L; INPUTS], sums: &mut [f32x8; {n}], \
-                     finite: &mut f32x8) -> [L; OUTPUTS] {{\n#[cfg(clippy)]\nreturn [v[0]; OUTPUTS];\n{LINTED}\n\
-                     {{\n{body}\n}}\n}}\n}}"
+                     fn rows<L: Lanes<Stored = f32x8>>(c: &[f32x8; {s}], packets: &mut [[f32x8; {kept}]], sums: &mut [f32x8; {n}], \
+                     finite: &mut f32x8) {{\n{LINTED}\n{{\n{body}}}\n}}\n}}"
                 );
                 bodies.push(body);
                 place
@@ -145,49 +148,86 @@ fn read(functions: &[&Function], numbers: usize) -> Vec<usize> {
     read.into_iter().collect()
 }
 
-/// Statements of a derivative. The sums of the numbers of a material grow, and the results and the derivatives by a hit are returned.
-fn body(gradient: &Function, results: usize, inputs: &Inputs<'_>, slots: &mut Slots) -> String {
-    let rows: Vec<u32> = gradient
-        .results()
-        .iter()
-        .map(|row| unchecked(gradient, *row))
-        .collect();
+/// Statements of a derivative, and how many numbers a packet keeps: its inputs, its outputs, and what is read in a later chunk. Each
+/// chunk is a loop over packets, whose operations do not wait for those of another, so that a CPU works on two of them at once. The
+/// sums of the numbers of a material grow from packet to packet.
+fn body(
+    gradient: &Function,
+    results: usize,
+    inputs: &Inputs<'_>,
+    slots: &mut Slots,
+) -> (String, usize) {
+    let graph = gradient.graph();
+    let rows = gradient.results().iter();
+    let rows: Vec<u32> = rows.map(|row| unchecked(gradient, *row)).collect();
     let (values, derivatives) = rows.split_at(results);
     let (by_material, by_hit) = derivatives.split_at(inputs.numbers);
-    let order: Vec<u32> = order::order(gradient, &rows);
-    let by_material = by_material
+    let by_hit = &by_hit[..ARGUMENTS];
+    let sums = by_material
         .iter()
         .zip(0_usize..)
-        .filter_map(|(row, place)| Some((*row, inputs.read.binary_search(&place).ok()?)));
-    let by_material: Vec<(u32, usize)> = by_material.collect();
-    let by_hit = &by_hit[..ARGUMENTS];
-    let returned: Vec<u32> = values.iter().chain(by_hit).copied().collect();
-    let mut out = "let mut check = L::load(finite);\n".to_owned();
-    out += &statements(gradient, &order, &returned, |place| {
-        let mut text = operation(gradient, place, inputs, slots) + ";";
-        for (_, row) in by_material.iter().filter(|(row, _)| *row == place) {
-            text += &format!("\nsums[{row}] = (L::load(&sums[{row}]) + x{place}).store();");
+        .filter_map(|(row, place)| {
+            let place = inputs.read.binary_search(&place).ok()?;
+            Some((
+                *row,
+                format!("sums[{place}] = (L::load(&sums[{place}]) + $x).store();\n"),
+            ))
+        });
+    let outputs = values.iter().zip(INPUTS..);
+    let outputs = outputs.chain(by_hit.iter().zip(INPUTS + RESULTS..));
+    let outputs = outputs.map(|(row, place)| (*row, format!("k[{place}] = $x.store();\n")));
+    // What is done with rows: at once, or at the end with those that no operation computes.
+    let uses: Vec<(u32, String)> = sums.chain(outputs).collect();
+    let mut chunks = Chunks::new(graph, &rows, INPUTS + OUTPUTS);
+    let mut out = String::new();
+    while let Some(places) = chunks.next_chunk() {
+        let mut text = String::new();
+        for place in places {
+            for (operand, slot) in chunks.loaded(place) {
+                let kept = format!("L::load(&k[{slot}])");
+                let kept = if graph.node(operand).is_mask() {
+                    format!("L::splat(0.0).lt({kept})")
+                } else {
+                    kept
+                };
+                let _ = writeln!(text, "let x{operand} = {kept};");
+            }
+            let operation = operation(gradient, place, inputs, slots);
+            let _ = writeln!(text, "let x{place} = {operation};");
+            for (_, line) in uses.iter().filter(|(row, _)| *row == place) {
+                text += &line.replace("$x", &format!("x{place}"));
+            }
+            if by_hit.contains(&place) {
+                let _ = writeln!(text, "check = x{place}.mul_add(L::splat(0.0), check);");
+            }
+            if let Some(slot) = chunks.kept(place) {
+                let kept = if graph.node(place).is_mask() {
+                    format!("L::select(x{place}, L::splat(1.0), L::splat(0.0))")
+                } else {
+                    format!("x{place}")
+                };
+                let _ = writeln!(text, "k[{slot}] = {kept}.store();");
+            }
         }
-        if by_hit.contains(&place) {
-            text += &format!("\ncheck = x{place}.mul_add(L::splat(0.0), check);");
+        if text.contains("check = ") {
+            text = format!(
+                "let mut check = L::load(finite);\nfor k in packets.iter_mut() {{\n{text}}}\n*finite = check.store();\n"
+            );
+        } else {
+            text = format!("for k in packets.iter_mut() {{\n{text}}}\n");
         }
-        text
-    });
-    for (row, place) in &by_material {
-        if !gradient.graph().node(*row).is_computed() {
-            let value = operand(gradient, *row, inputs, slots);
-            out += &format!("sums[{place}] = (L::load(&sums[{place}]) + {value}).store();\n");
+        out += &text;
+    }
+    out += "for k in packets.iter_mut() {\n";
+    for (row, line) in &uses {
+        if !graph.node(*row).is_computed() {
+            out += &line.replace("$x", &operand(gradient, *row, inputs, slots));
         }
     }
-    out += "*finite = check.store();\n";
-    let mut outputs: Vec<String> = returned
-        .iter()
-        .map(|row| operand(gradient, *row, inputs, slots))
-        .collect();
     for place in results..RESULTS {
-        outputs.insert(place, "L::splat(0.0)".to_owned());
+        let _ = writeln!(out, "k[{}] = L::splat(0.0).store();", INPUTS + place);
     }
-    out + &format!("[{}]", outputs.join(", "))
+    (out + "}\n", chunks.len())
 }
 
 /// Statements in groups. In a debugger each name is in scope from its statement on: a scope in the one before, of which compilers bear a
@@ -269,6 +309,15 @@ impl Slots {
         format!("L::load(&c[{place}])")
     }
 
+    /// Argument of a hit.
+    fn argument(&self, place: usize) -> String {
+        if self.is_one_lane {
+            format!("v[{place}]")
+        } else {
+            format!("L::load(&k[{place}])")
+        }
+    }
+
     fn text(&self) -> String {
         let slots = self.kinds.iter().map(|kind| match kind {
             Kind::Input(place) => format!("Slot::Number({place}),"),
@@ -290,7 +339,7 @@ fn operand(function: &Function, place: u32, inputs: &Inputs<'_>, slots: &mut Slo
     let graph = function.graph();
     match graph.node(place).kind {
         Kind::Input(input) => match (input as usize).checked_sub(inputs.numbers) {
-            Some(place) => format!("v[{place}]"),
+            Some(place) => slots.argument(place),
             None => slots.load(graph.node(place).kind),
         },
         Kind::Mask(mask) => {

@@ -22,6 +22,9 @@ pub(crate) const OUTPUTS: usize = RESULTS + ARGUMENTS;
 const BLOCK: usize = 64;
 /// Packets of a call of a dispatched function.
 pub(crate) const GROUP: usize = 16;
+/// Packets that take turns: each chunk of operations runs over them before the next does. What they keep in between should stay in the
+/// second level of cache.
+const TURNS: usize = 4;
 
 /// A number that all lanes share.
 #[derive(Clone, Copy, Debug)]
@@ -32,20 +35,21 @@ enum Slot {
     Constant(u32),
 }
 
-/// Derivatives that read `S` shared numbers and have a sum for each of `N` numbers of a material.
-trait Rows<const S: usize, const N: usize> {
+/// Derivatives that read `S` shared numbers, have a sum for each of `N` numbers of a material, and keep `K` numbers of a packet, of which
+/// its inputs and its outputs are the first.
+trait Rows<const S: usize, const N: usize, const K: usize> {
     /// Whether the density is among the results, and not 0.
     const HAS_PDF: bool;
     /// The shared numbers: in memory, where instructions read them. Compilers would load constants into registers, one at a time.
     const SLOTS: &'static [Slot; S];
-    /// Results and derivatives by the hit. Derivatives by the material are added to `sums`, and `finite` stays finite if all derivatives by
-    /// the hit are.
+    /// Results and derivatives by the hit, from the inputs of each packet. Derivatives by the material are added to `sums`, and `finite`
+    /// stays finite if all derivatives by the hit are.
     fn rows<L: Lanes<Stored = f32x8>>(
         shared: &[f32x8; S],
-        v: [L; INPUTS],
+        packets: &mut [[f32x8; K]],
         sums: &mut [f32x8; N],
         finite: &mut f32x8,
-    ) -> [L; OUTPUTS];
+    );
 }
 
 mod models {
@@ -93,8 +97,10 @@ impl Upper for f32 {
 }
 
 /// Full packets of hits.
-struct Hits<'c, G, const S: usize, const N: usize> {
+struct Hits<'c, G, const S: usize, const N: usize, const K: usize> {
     shared: &'c [f32x8; S],
+    /// Room for packets that take turns.
+    kept: &'c mut [[f32x8; K]],
     inputs: [&'c [[f32; 8]]; INPUTS],
     outputs: [&'c [Cell<[f32; 8]>]; OUTPUTS],
     sums: &'c mut [f32x8; N],
@@ -102,7 +108,9 @@ struct Hits<'c, G, const S: usize, const N: usize> {
     rows: PhantomData<G>,
 }
 
-impl<G: Rows<S, N>, const S: usize, const N: usize> Kernel for Hits<'_, G, S, N> {
+impl<G: Rows<S, N, K>, const S: usize, const N: usize, const K: usize> Kernel
+    for Hits<'_, G, S, N, K>
+{
     type Output = ();
     // Compiling the density once more takes longest.
     const MANY_REGISTERS: bool = !G::HAS_PDF;
@@ -110,34 +118,27 @@ impl<G: Rows<S, N>, const S: usize, const N: usize> Kernel for Hits<'_, G, S, N>
     #[inline(always)]
     fn run<L: Lanes<Stored = f32x8>>(self) {
         let packets = self.inputs[0].len();
-        let (mut inputs, mut outputs) = ([&[][..]; INPUTS], [&[][..]; OUTPUTS]);
-        for (to, column) in inputs.iter_mut().zip(&self.inputs) {
-            let Some(column) = column.get(..packets) else {
+        let mut at = 0;
+        while at < packets {
+            // Each column has the packets; an index would leave a panic in the code.
+            let few = at..packets.min(at + self.kept.len());
+            let Some(kept) = self.kept.get_mut(..few.len()) else {
                 return;
             };
-            *to = column;
-        }
-        for (to, column) in outputs.iter_mut().zip(&self.outputs) {
-            let Some(column) = column.get(..packets) else {
-                return;
-            };
-            *to = column;
-        }
-        for packet in 0..packets {
-            let mut v = [L::splat(0.0); INPUTS];
-            // Each column has the packet; an index would leave a panic in the code.
-            for (to, column) in v.iter_mut().zip(&inputs) {
-                if let Some(numbers) = column.get(packet) {
-                    *to = L::load(&f32x8::new(*numbers));
+            for (place, column) in self.inputs.iter().enumerate() {
+                let column = column.get(few.clone()).unwrap_or_default();
+                for (k, numbers) in kept.iter_mut().zip(column) {
+                    k[place] = f32x8::new(*numbers);
                 }
             }
-            let out = G::rows::<L>(self.shared, v, self.sums, self.finite);
-            for (column, row) in outputs.iter().zip(&out) {
-                let column: &[Cell<[f32; 8]>] = column;
-                if let Some(numbers) = column.get(packet) {
-                    numbers.set(row.store().to_array());
+            G::rows::<L>(self.shared, kept, self.sums, self.finite);
+            for (place, column) in self.outputs.iter().enumerate() {
+                let column = column.get(few.clone()).unwrap_or_default();
+                for (k, numbers) in kept.iter().zip(column) {
+                    numbers.set(k[INPUTS + place].to_array());
                 }
             }
+            at = few.end;
         }
     }
 }
@@ -174,9 +175,26 @@ pub(crate) mod sealed {
     pub struct Rows<'c, 'a, 'b>(pub(crate) &'c mut Call<'a, 'b>);
 }
 
-/// Runs the derivatives `G`, which have sums for the numbers at these places of all numbers of a material. Compiled once per program.
+/// Runs the derivatives `G`, which have sums for the numbers at these places of all numbers of a material.
+#[inline]
+fn run<G: Rows<S, N, K>, const S: usize, const N: usize, const K: usize>(
+    call: &mut Call<'_, '_>,
+    all: &[f32],
+    places: &'static [usize],
+    level: Level,
+) {
+    // A call of one packet does not clear the room of several.
+    if call.len <= 8 {
+        run_in::<G, S, N, K>(&mut [[f32x8::ZERO; K]], call, all, places, level);
+    } else {
+        run_in::<G, S, N, K>(&mut [[f32x8::ZERO; K]; TURNS], call, all, places, level);
+    }
+}
+
+/// Runs the derivatives with this room. Compiled once per program.
 #[inline(never)]
-fn run<G: Rows<S, N>, const S: usize, const N: usize>(
+fn run_in<G: Rows<S, N, K>, const S: usize, const N: usize, const K: usize>(
+    kept: &mut [[f32x8; K]],
     call: &mut Call<'_, '_>,
     all: &[f32],
     places: &'static [usize],
@@ -202,8 +220,9 @@ fn run<G: Rows<S, N>, const S: usize, const N: usize>(
         let mut finite = f32x8::ZERO;
         let most = if is_alone { 1 } else { GROUP };
         let count = call.packets(at, most, |inputs, outputs| {
-            level.run(Hits::<G, S, N> {
+            level.run(Hits::<G, S, N, K> {
                 shared: &shared,
+                kept: &mut *kept,
                 inputs,
                 outputs,
                 sums: &mut rows,
@@ -217,7 +236,11 @@ fn run<G: Rows<S, N>, const S: usize, const N: usize>(
                 *sum += *row;
             }
             call.finish(at, places, &rows);
-        } else if rows.iter().chain([&finite]).all(is_finite) {
+        } else if is_finite(
+            &rows
+                .iter()
+                .fold(finite, |all, row| all + *row * f32x8::ZERO),
+        ) {
             sums = rows;
         } else {
             alone_until = at + 8 * count;
@@ -298,9 +321,9 @@ macro_rules! differentiable {
                     }
                 });
                 if const { HAS_PDF } {
-                    run::<ValuePdf, { ValuePdf::S }, { ValuePdf::N }>(call.0, &all, VALUE_PDF, level);
+                    run::<ValuePdf, { ValuePdf::S }, { ValuePdf::N }, { ValuePdf::K }>(call.0, &all, VALUE_PDF, level);
                 } else {
-                    run::<Value, { Value::S }, { Value::N }>(call.0, &all, VALUE, level);
+                    run::<Value, { Value::S }, { Value::N }, { Value::K }>(call.0, &all, VALUE, level);
                 }
             }
         }

@@ -1,0 +1,106 @@
+//! Chunks of the operations of a derivative, and where packets keep numbers from chunk to chunk.
+
+use core::ops::{Range, RangeInclusive};
+use hairis_shaders::Graph;
+use std::collections::BTreeSet;
+
+/// Operations of a chunk. Two of them fit what a CPU looks ahead, so that it begins a packet before the one before is done.
+const OPERATIONS: RangeInclusive<usize> = 48..=80;
+
+/// Operations that rows need, in the order of the graph, chunk by chunk.
+pub(crate) struct Chunks<'a> {
+    graph: &'a Graph,
+    order: Vec<u32>,
+    /// Position of the operation that reads a number last.
+    last: Vec<usize>,
+    /// Operations of the chunk.
+    chunk: Range<usize>,
+    /// Numbers that packets keep and the chunk has named.
+    named: BTreeSet<u32>,
+    /// Place of each number in a packet, if it is kept.
+    slots: Vec<Option<usize>>,
+    /// Places of numbers that nothing reads any more.
+    free: Vec<usize>,
+    len: usize,
+}
+
+impl<'a> Chunks<'a> {
+    /// Chunks of what these rows need. Packets keep `len` other numbers first.
+    pub(crate) fn new(graph: &'a Graph, rows: &[u32], len: usize) -> Self {
+        let places = (0_u32..).zip(graph.nodes()).zip(graph.needed(rows));
+        let places = places.filter(|((_, node), is_needed)| *is_needed && node.is_computed());
+        let order: Vec<u32> = places.map(|((place, _), _)| place).collect();
+        let mut last = vec![0; graph.nodes().len()];
+        for (at, place) in order.iter().enumerate() {
+            for operand in graph.node(*place).operands() {
+                last[*operand as usize] = at;
+            }
+        }
+        Self {
+            graph,
+            order,
+            slots: vec![None; last.len()],
+            last,
+            chunk: 0..0,
+            named: BTreeSet::new(),
+            free: Vec::new(),
+            len,
+        }
+    }
+
+    /// Count of the numbers that a packet keeps.
+    pub(crate) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Operations of the next chunk: it ends where the fewest of its numbers are read later.
+    pub(crate) fn next_chunk(&mut self) -> Option<Vec<u32>> {
+        for place in core::mem::take(&mut self.named) {
+            if self.last[place as usize] < self.chunk.end {
+                self.free.extend(self.slots[place as usize]);
+            }
+        }
+        let start = self.chunk.end;
+        let left = self.order.len() - start;
+        let len = if left <= *OPERATIONS.end() {
+            left
+        } else {
+            OPERATIONS.min_by_key(|len| {
+                let end = start + len;
+                let places = self.order[start..end].iter();
+                places
+                    .filter(|place| self.last[**place as usize] >= end)
+                    .count()
+            })?
+        };
+        self.chunk = start..start + len;
+        (len > 0).then(|| self.order[self.chunk.clone()].to_vec())
+    }
+
+    /// Operands of this operation that the chunk has not named yet, and their places in a packet.
+    pub(crate) fn loaded(&mut self, place: u32) -> Vec<(u32, usize)> {
+        let mut loaded = Vec::new();
+        for operand in self.graph.node(place).operands() {
+            if let Some(slot) = self.slots[*operand as usize]
+                && self.named.insert(*operand)
+            {
+                loaded.push((*operand, slot));
+            }
+        }
+        loaded
+    }
+
+    /// Place in a packet for the result of this operation of the chunk, if a later one reads it.
+    pub(crate) fn kept(&mut self, place: u32) -> Option<usize> {
+        if self.last[place as usize] < self.chunk.end {
+            return None;
+        }
+        let slot = self.free.pop().unwrap_or_else(|| {
+            self.len += 1;
+            self.len - 1
+        });
+        self.slots[place as usize] = Some(slot);
+        self.named.insert(place);
+        Some(slot)
+    }
+}
