@@ -2,7 +2,8 @@
 # Promise: the properties hold for other numbers than those of CI, and the slow tests pass. By hand: every round draws a seed,
 # prints it, and runs the tests of kernels and variants with it; then those of the kernels compiled for x86-64-v3, the energy of
 # 40,000 materials, and the tests that are ignored for their time, run once; then size and answers of the C library without the
-# feature `every-sampler`, the tests of models, derivatives, harness and renderer with it, and the hosts without an operating system.
+# feature `every-sampler`, the tests of models, derivatives, harness and renderer with it, those of the wheel and Mitsuba's chi-square with
+# it, and the hosts without an operating system. The wheel needs the virtual environment that .ci/hosts.sh makes.
 #
 #   .ci/long.sh          one round
 #   .ci/long.sh ROUNDS   so many
@@ -46,5 +47,19 @@ library() {
   [ "$size" -le 2500000 ]
 }
 library || { echo "FAIL the C library"; failed=1; }
+# The wheel with every sampler: its tests, and Mitsuba's chi-square test of all eleven entries of the list.
+wheel() {
+  local work python llvm
+  work=$(realpath -m "${CARGO_TARGET_DIR:-target}")/hosts
+  python=$work/venv/bin/python
+  [ -x "$python" ] || { echo "the wheel needs $python: run .ci/hosts.sh"; return 1; }
+  (cd variants/python && "$work/venv/bin/maturin" build -q --locked --features every-sampler --target-dir "$work/wheel" --out "$work/every") &&
+    "$python" -m pip install -q --force-reinstall --no-deps "$work"/every/*.whl || return 1
+  llvm=$(ls /usr/lib/*/libLLVM.so.[0-9]* 2> /dev/null | sort -V | tail -1)
+  "$python" -m pytest -q -p no:cacheprovider variants/python/tests &&
+    (cd variants/capi/examples/mitsuba && DRJIT_LIBLLVM_PATH=$llvm "$python" chi2.py | tee "$work/chi2.log") &&
+    grep -q '88 of 88 pass' "$work/chi2.log"
+}
+wheel || { echo "FAIL the wheel with every sampler"; failed=1; }
 .ci/cortex_m.sh || failed=1
 exit $failed
