@@ -50,8 +50,8 @@ def main():
     gap = np.ones((height, 4, 3))
     both = np.hstack([pictures[0].mean(0), gap, pictures[1].mean(0)])
     mi.util.write_bitmap(picture, np.float32(both), write_async=False, quality=85)
-    # Mitsuba moves the start of a ray off the surface by up to half of the radius of these hairs.
-    return np.all(np.abs(difference) < 0.003 * mine + 3 * error)
+    # After many scatterings the renderers differ by a tenth of a percent: see beside.md.
+    return np.all(np.abs(difference) < 0.001 * mine + 3 * error)
 
 
 if __name__ == "__main__":

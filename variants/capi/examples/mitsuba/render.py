@@ -11,6 +11,7 @@ import numpy as np
 
 SIZE = 512
 CROP = (88, 112, 336, 256)  # x, y, width, height
+SEGMENTS = 20
 
 
 def set_variant(variant):
@@ -25,7 +26,8 @@ def set_variant(variant):
 
 
 def tuft():
-    """Control points of strands as rows x, y, z and radius in cm; y is up."""
+    """Control points of strands as rows x, y, z and radius in cm; y is up. Strands are pointed at both ends, because hairis-render closes
+    ends by half spheres, and Mitsuba leaves them open."""
     rng = np.random.default_rng(3)
     t = np.linspace(0, 1, 24)[:, None]
     strands = []
@@ -34,13 +36,13 @@ def tuft():
         curl = 0.4 * (1 + 0.3 * rng.normal()) * np.exp(1j * (2 * np.pi * (1.7 * t + 0.15 * rng.normal()) + np.angle(root))) * t
         far = root * (1 + 0.8 * t + (0.9 + 0.2 * rng.normal()) * t**2) + curl
         x, y, z = far.real, (13 + rng.normal()) * (t - 0.95 * t**2), far.imag
-        strands.append(np.hstack([x, y, z, 0.006 * (1 - 0.6 * t)]))
+        strands.append(np.hstack([x, y, z, 0.024 * t * (1 - t)]))
     return strands
 
 
 def lines(points):
-    """A uniform cubic B-spline as five segments per span."""
-    t = np.arange(5)[:, None] / 5
+    """A uniform cubic B-spline as segments, so many per span that pictures do not depend on their number."""
+    t = np.arange(SEGMENTS)[:, None] / SEGMENTS
     weights = np.hstack([(1 - t) ** 3, 3 * t**3 - 6 * t**2 + 4, -3 * t**3 + 3 * t**2 + 3 * t + 1, t**3]) / 6
     end = np.array([[1, 4, 1]]) / 6 @ points[-3:]
     return np.vstack([weights @ points[k : k + 4] for k in range(len(points) - 3)] + [end])
