@@ -39,7 +39,7 @@ def _axes(axes: Axes | None, **arguments: Any) -> Axes:
 
 
 def polar(bsdf: Bsdf, theta: float | None = None, *, count: int = 1024, axes: Axes | None = None) -> Axes:
-    """Draw each lobe and their sum as a polar plot over the azimuth of `wi`.
+    """Draw each lobe and their sum as a polar plot over the azimuth of `wi`, on a logarithmic scale.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def polar(bsdf: Bsdf, theta: float | None = None, *, count: int = 1024, axes: Ax
     Returns
     -------
     matplotlib Axes
-        The radius is the luminance of S times the cosine, per steradian; the angle is the azimuth of `wi`, rad.
+        The radius is the luminance of S times the cosine, per steradian, over four decades; the angle is the azimuth of `wi`, rad.
     """
     axes = _axes(axes, projection="polar")
     phi = np.linspace(-np.pi, np.pi, count)
@@ -64,13 +64,18 @@ def polar(bsdf: Bsdf, theta: float | None = None, *, count: int = 1024, axes: Ax
         values = LUMINANCE @ bsdf.eval_columns(_directions(grid, azimuths))["value"]
         theta = float(grid.ravel()[int(np.argmax(values * np.cos(grid.ravel())))])
     wi = _directions(np.full_like(phi, theta), phi)
+    total = LUMINANCE @ bsdf.eval_columns(wi)["value"] * np.cos(theta)
+    most = max(float(total.max()), 1e-30)
+    axes.plot(phi, np.maximum(total, 1e-9 * most), "k", label="sum", linewidth=2, alpha=0.3)
     for name in bsdf.albedo():
         one = LUMINANCE @ bsdf.with_lobes([name]).eval_columns(wi)["value"] * np.cos(theta)
         if one.max() > 0:
-            axes.plot(phi, one, label=name, linewidth=1)
-    axes.plot(phi, LUMINANCE @ bsdf.eval_columns(wi)["value"] * np.cos(theta), "k", label="sum", linewidth=0.6)
-    axes.set_title(f"theta_i = {np.degrees(theta):.1f} degrees")
-    axes.legend(loc="lower left", fontsize="small")
+            label = name.upper() if name[0] in "rt" else name
+            axes.plot(phi, np.maximum(one, 1e-9 * most), label=label, linewidth=1)
+    title = f"theta_i = {np.degrees(theta):.1f}°"
+    axes.set(rscale="log", ylim=(1e-4 * most, 1.2 * most), rlabel_position=110, title=title)
+    axes.tick_params(labelsize="small")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3, fontsize="small", frameon=False)
     return axes
 
 
@@ -97,6 +102,6 @@ def sphere(bsdf: Bsdf, *, resolution: int = 256, axes: Axes | None = None) -> Ax
     values = LUMINANCE @ bsdf.eval_columns(_directions(*np.meshgrid(theta, phi, indexing="ij")))["value"]
     shown = np.log10(np.maximum(values, max(float(values.max()), 1e-30) * 1e-6)).reshape(resolution, -1)
     image = axes.imshow(shown, origin="lower", extent=(-180, 180, -90, 90), cmap="magma")
-    axes.set(xlabel="phi_i, degrees", ylabel="theta_i, degrees")
+    axes.set(xlabel="phi_i, degrees", ylabel="theta_i, degrees", xticks=range(-180, 181, 90), yticks=range(-90, 91, 45))
     axes.figure.colorbar(image, ax=axes, label="log10 S", shrink=0.6)
     return axes
