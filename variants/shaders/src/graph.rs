@@ -201,6 +201,26 @@ impl Graph {
         self.number(place).is_some_and(|x| integers.contains(&x))
     }
 
+    /// Number that the mask at a place tests: the mask of every number, and not of NaN. It is below one constant, or above a smaller one.
+    #[must_use]
+    pub fn tested_number(&self, place: u32) -> Option<&u32> {
+        let less = |place: u32| {
+            let node = &self.nodes[place as usize];
+            (node.kind == Kind::Op(Op::Less)).then_some(&node.args)
+        };
+        let node = self.node(place);
+        if node.kind != Kind::Op(Op::Or) {
+            return None;
+        }
+        let [one, other] = [less(node.args[0])?, less(node.args[1])?];
+        let ways = [[one, other], [other, one]];
+        ways.into_iter()
+            .find_map(|[[below, high, _], [low, above, _]]| {
+                let is_any = self.number(*low)? < self.number(*high)?;
+                (below == above && is_any).then_some(below)
+            })
+    }
+
     fn mask(&self, place: u32) -> Option<bool> {
         match self.node(place).kind {
             Kind::Mask(mask) => Some(mask),

@@ -12,7 +12,8 @@ use crate::record::{Field, Record, Shape};
 use core::fmt::Write as _;
 pub use driver::driver;
 use hairis::simd::trace::Op;
-use operations::{template, write_template};
+use operations::{Form, template, write_template};
+use std::collections::HashSet;
 use syntax::head;
 
 /// A language that programs are printed in.
@@ -214,8 +215,10 @@ impl<'a> Body<'a> {
 
     fn print(&self, out: &mut String) {
         self.signature(out);
-        let mut last = None;
-        for place in self.function.schedule() {
+        let (mut last, schedule) = (None, self.function.schedule());
+        let operands = schedule.iter().flat_map(|place| self.operands(*place));
+        let read: HashSet<u32> = operands.chain(self.function.results()).copied().collect();
+        for place in schedule.into_iter().filter(|place| read.contains(place)) {
             let now = comment(self.function.graph().origin(place));
             if now.is_some() && now != last {
                 let _ = writeln!(out, "    // {}", now.as_deref().unwrap_or_default());
@@ -291,6 +294,20 @@ impl<'a> Body<'a> {
         unused
     }
 
+    /// Number that the mask at a place tests, in languages whose drivers ignore NaN in comparisons.
+    fn tested(&self, place: u32) -> Option<&u32> {
+        let tested = self.function.graph().tested_number(place);
+        tested.filter(|_| self.language != Language::C)
+    }
+
+    /// Numbers and masks that the text of a value reads.
+    fn operands(&self, place: u32) -> &[u32] {
+        match self.tested(place) {
+            Some(tested) => core::slice::from_ref(tested),
+            None => self.function.graph().node(place).operands(),
+        }
+    }
+
     fn binding(&self, place: u32) -> &'static str {
         let is_mask = self.function.graph().node(place).is_mask();
         self.language.binding(is_mask)
@@ -316,14 +333,20 @@ impl<'a> Body<'a> {
             unreachable!("what is scheduled is computed")
         };
         let operands = node.operands();
-        let rounds = operands.iter().position(|operand| graph.rounds(*operand));
-        let is_infinite = |operand: u32| graph.number(operand) == Some(f32::INFINITY);
-        let template = template(
-            self.language,
-            op,
-            rounds,
-            op == Op::Less && is_infinite(operands[1]),
-        );
+        let form = if let Some(tested) = self.tested(place) {
+            return format!("{}is_number({})", self.prefix, self.name(*tested));
+        } else if let Some(place) = operands.iter().position(|operand| graph.rounds(*operand)) {
+            Form::Rounds(place)
+        } else {
+            match (op, operands) {
+                (Op::Less, [_, b]) if graph.number(*b) == Some(f32::INFINITY) => {
+                    Form::BelowInfinity
+                }
+                (Op::Min | Op::Max, [_, b]) if graph.number(*b).is_some() => Form::Limit,
+                _ => Form::Any,
+            }
+        };
+        let template = template(self.language, op, form);
         let names: Vec<_> = operands.iter().map(|operand| self.name(*operand)).collect();
         write_template(template, &self.prefix, &names)
     }

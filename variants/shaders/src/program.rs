@@ -357,7 +357,9 @@ pub fn every_operation(target: Target) -> Program {
     let near = op(Op::Min, [a, most, 0]);
     let near = op(Op::Max, [near, least, 0]);
     let (m, n) = (op(Op::Less, [a, b, 0]), op(Op::AtLeast, [b, c, 0]));
+    let [below, above] = [[a, one, 0], [zero, a, 0]].map(|args| op(Op::Less, args));
     let masks = [
+        (Op::Or, [below, above, 0]),
         (Op::And, [m, n, 0]),
         (Op::Or, [m, n, 0]),
         (Op::Not, [m, 0, 0]),

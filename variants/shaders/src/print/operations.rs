@@ -4,20 +4,25 @@
 use super::Language;
 use hairis::simd::trace::Op;
 
+/// Knowledge of the operands.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Form {
+    /// Nothing.
+    Any,
+    /// The operand at this place is a constant from 2^23 on. A sum with it rounds to an integer, which compilers undo that take sums
+    /// apart: `magic - (magic + x)` becomes `-x`, and every bell is up to `sqrt(2)` off.
+    Rounds(usize),
+    /// A comparison with infinity, of which WGSL has none, and which fast arithmetic takes for true.
+    BelowInfinity,
+    /// The second operand is a constant, and so no NaN.
+    Limit,
+}
+
 /// Template of an operation.
-///
-/// - `rounds`: the operand that is a constant from 2^23 on. A sum with it rounds to an integer, which compilers undo that take
-///   sums apart: `magic - (magic + x)` becomes `-x`, and every bell is up to `sqrt(2)` off.
-/// - `is_below_infinity`: a comparison with infinity, of which WGSL has none, and which fast arithmetic takes for true.
-pub(super) fn template(
-    language: Language,
-    op: Op,
-    rounds: Option<usize>,
-    is_below_infinity: bool,
-) -> &'static str {
+pub(super) fn template(language: Language, op: Op, form: Form) -> &'static str {
     use Language::{C, Glsl, Hlsl, Msl, Wgsl};
     if language.takes_sums_apart()
-        && let Some(operand) = rounds
+        && let Form::Rounds(operand) = form
     {
         match (language, op, operand) {
             (Wgsl, Op::Add, 0) => return "$a + round($b)",
@@ -30,8 +35,8 @@ pub(super) fn template(
         }
     }
     match (language, op) {
-        (C, Op::Less) if is_below_infinity => "$a <= 3.40282347e+38f",
-        (_, Op::Less) if is_below_infinity => "$pis_below_infinity($a)",
+        (C, Op::Less) if form == Form::BelowInfinity => "$a <= 3.40282347e+38f",
+        (_, Op::Less) if form == Form::BelowInfinity => "$pis_below_infinity($a)",
         (_, Op::Constant(_)) => unreachable!("constants are literals"),
         (_, Op::Add) => "$a + $b",
         (_, Op::Sub) => "$a - $b",
@@ -51,7 +56,12 @@ pub(super) fn template(
         (_, Op::Sqrt) => "sqrt($a)",
         (C, Op::Abs) => "fabsf($a)",
         (_, Op::Abs) => "abs($a)",
-        // Never those of the language: which operand they return for NaN is open.
+        // Never those of the language: which operand they return for NaN is open. A GPU has them as one instruction, which returns
+        // the number where the other is NaN, and drivers take it for a choice by a comparison, too.
+        (Wgsl, Op::Min) if form == Form::Limit => "select($b, $a, $a < $b)",
+        (Wgsl, Op::Max) if form == Form::Limit => "select($b, $a, $a > $b)",
+        (Glsl | Hlsl | Msl, Op::Min) if form == Form::Limit => "$a < $b ? $a : $b",
+        (Glsl | Hlsl | Msl, Op::Max) if form == Form::Limit => "$a > $b ? $a : $b",
         (_, Op::Min) => "$pmin($a, $b)",
         (_, Op::Max) => "$pmax($a, $b)",
         (_, Op::TimesSign) => "$ptimes_sign($a, $b)",

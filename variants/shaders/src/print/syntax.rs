@@ -89,11 +89,22 @@ using namespace metal;
 #endif
 ";
 
-/// Operations of languages that look like C, on top of those names.
-const LIKE_C: &str = "\
+/// Choices of C, whose compilers keep NaN.
+const CHOICES_C: &str = "\
 // The second operand where either is NaN.
 HAIRIS_FN float $pmin(float a, float b) { return a < b ? a : b; }
 HAIRIS_FN float $pmax(float a, float b) { return a > b ? a : b; }
+";
+/// Choices where drivers may take a comparison with NaN for true, and a choice by a comparison for an instruction that loses NaN.
+const CHOICES: &str = "\
+HAIRIS_FN HAIRIS_MASK $pis_number(float a) { return (HAIRIS_BITS(a) & 0x7fffffffu) <= 0x7f800000u; }
+// The second operand where either is NaN.
+HAIRIS_FN float $pmin(float a, float b) { return $pis_number(b) ? (a < b ? a : b) : b; }
+HAIRIS_FN float $pmax(float a, float b) { return $pis_number(b) ? (a > b ? a : b) : b; }
+";
+
+/// Operations of languages that look like C, on top of those names.
+const LIKE_C: &str = "\
 HAIRIS_FN float $ptimes_sign(float a, float b) {
     return HAIRIS_NUMBER(HAIRIS_BITS(a) ^ (HAIRIS_BITS(b) & 0x80000000u));
 }
@@ -115,9 +126,10 @@ HAIRIS_FN HAIRIS_MASK $pis_below_infinity(float a) {
 ";
 
 const WGSL: &str = "\
-// The second operand where either is NaN.
-fn $pmin(a: f32, b: f32) -> f32 { return select(b, a, a < b); }
-fn $pmax(a: f32, b: f32) -> f32 { return select(b, a, a > b); }
+fn $pis_number(a: f32) -> bool { return (bitcast<u32>(a) & 0x7fffffffu) <= 0x7f800000u; }
+// The second operand where either is NaN, which the instruction of a GPU loses.
+fn $pmin(a: f32, b: f32) -> f32 { return select(b, select(b, a, a < b), $pis_number(b)); }
+fn $pmax(a: f32, b: f32) -> f32 { return select(b, select(b, a, a > b), $pis_number(b)); }
 fn $ptimes_sign(a: f32, b: f32) -> f32 {
     return bitcast<f32>(bitcast<u32>(a) ^ (bitcast<u32>(b) & 0x80000000u));
 }
@@ -207,10 +219,10 @@ pub(super) fn head(program: &Program, language: Language) -> String {
         Language::Msl => MSL,
     };
     text += &constants;
-    let operations = if language == Language::Wgsl {
-        WGSL
-    } else {
-        LIKE_C
+    let operations = match language {
+        Language::C => [CHOICES_C, LIKE_C],
+        Language::Wgsl => [WGSL, ""],
+        _ => [CHOICES, LIKE_C],
     };
-    text + &operations.replace("$p", &prefix)
+    text + &operations.concat().replace("$p", &prefix)
 }
