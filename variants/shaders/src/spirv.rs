@@ -1,5 +1,6 @@
 //! SPIR-V, which can say that arithmetic keeps its order.
 
+use crate::call::Target;
 use crate::print::{Language, driver, print};
 use crate::program::Program;
 use naga::back::spv;
@@ -22,19 +23,52 @@ pub fn translate(source: &str) -> Result<Vec<u32>, String> {
 
 /// A compute shader per function of the program, which compilers may not rearrange: see [`driver`].
 ///
+/// With [`Target::Exact`] and [`Target::Fused`] results have the bits that these promise: the module asks for
+/// [IEEE's numbers](keep_numbers), and square roots are corrected.
+///
 /// # Errors
 ///
 /// In words, if naga rejects the program.
 pub fn module(program: &Program) -> Result<Vec<u32>, String> {
     let mut source = print(program, Language::Wgsl);
     source += &driver(program, Language::Wgsl);
-    let mut words = translate(&source)?;
+    if matches!(program.target(), Target::Gpu | Target::GpuNative) {
+        let mut words = translate(&source)?;
+        keep_order(&mut words);
+        return Ok(words);
+    }
+    let mut words = translate(&(source.replace(" sqrt(", " hairis_sqrt(") + SQUARE_ROOT))?;
     keep_order(&mut words);
+    keep_numbers(&mut words);
     Ok(words)
 }
 
+/// The square root that is nearest, from one that is a unit in the last place off, as GPUs have it. The rest `x - s^2` is exact, and
+/// beyond `s` times the distance of a neighbour where that is nearer. Numbers are scaled, so that no part of Dekker's product is denormal.
+const SQUARE_ROOT: &str = "
+fn hairis_sqrt(a: f32) -> f32 {
+    let up = a < 0x1p-40f;
+    let down = a > 0x1p+40f;
+    let x = a * select(select(1.0, 0x1p-80f, down), 0x1p+80f, up);
+    let s = sqrt(x);
+    let high = bitcast<f32>(bitcast<u32>(s) & 0xfffff000u);
+    let low = s - high;
+    let square = s * s;
+    let rest = (x - square) - (((high * high - square) + high * low + low * high) + low * low);
+    let above = bitcast<f32>(bitcast<u32>(s) + 1u);
+    let below = bitcast<f32>(bitcast<u32>(s) - 1u);
+    let nearest = select(select(s, above, rest > s * (above - s)), below, rest <= s * (below - s));
+    let root = select(s, nearest, 0.0 < x && x < 0x1p+100f);
+    return root * select(select(1.0, 0x1p+40f, down), 0x1p-40f, up);
+}
+";
+
 /// Words before the first instruction.
 const HEADER: usize = 5;
+const OP_EXTENSION: u32 = 10;
+const OP_ENTRY_POINT: u32 = 15;
+const OP_EXECUTION_MODE: u32 = 16;
+const OP_CAPABILITY: u32 = 17;
 const OP_DECORATE: u32 = 71;
 const OP_MEMBER_DECORATE: u32 = 72;
 const NO_CONTRACTION: u32 = 42;
@@ -56,4 +90,41 @@ pub fn keep_order(words: &mut Vec<u32>) {
         at += len.max(1);
     }
     words.splice(end..end, decorations);
+}
+
+/// Capabilities and execution modes: `DenormPreserve`, `SignedZeroInfNanPreserve`, `RoundingModeRTE`.
+const CONTROLS: [[u32; 2]; 3] = [[4464, 4459], [4466, 4461], [4467, 4462]];
+
+/// Asks for IEEE's numbers in every entry point: denormals, NaN, infinity and the sign of 0 are kept, and results round to nearest, those
+/// of divisions as well on drivers that would otherwise approximate them.
+///
+/// The module then needs `SPV_KHR_float_controls`, and a device with `shaderDenormPreserveFloat32`,
+/// `shaderSignedZeroInfNanPreserveFloat32` and `shaderRoundingModeRTEFloat32`.
+pub fn keep_numbers(words: &mut Vec<u32>) {
+    let mut out = words[..HEADER].to_vec();
+    let (mut at, mut entry_points, mut is_named) = (HEADER, Vec::new(), false);
+    for [capability, _] in CONTROLS {
+        out.extend([2 << 16 | OP_CAPABILITY, capability]);
+    }
+    while at < words.len() {
+        let (op, len) = (words[at] & 0xffff, (words[at] >> 16) as usize);
+        if op != OP_CAPABILITY && !is_named {
+            let (name, _) = b"SPV_KHR_float_controls\0\0".as_chunks::<4>();
+            out.push(7 << 16 | OP_EXTENSION);
+            out.extend(name.iter().map(|bytes| u32::from_le_bytes(*bytes)));
+            is_named = true;
+        }
+        if op == OP_ENTRY_POINT {
+            entry_points.push(words[at + 2]);
+        } else {
+            for entry_point in entry_points.drain(..) {
+                for [_, mode] in CONTROLS {
+                    out.extend([4 << 16 | OP_EXECUTION_MODE, entry_point, mode, 32]);
+                }
+            }
+        }
+        out.extend(&words[at..at + len.max(1)]);
+        at += len.max(1);
+    }
+    *words = out;
 }

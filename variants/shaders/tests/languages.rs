@@ -115,11 +115,13 @@ impl Visitor for Glslang {
             panic!("{} in GLSL: {error}", program.name());
         }
         compile_hlsl(&program, dir.path());
-        let module = spirv::module(&program).expect("naga accepts it");
-        let file = dir.path().join("module.spv");
-        write_words(&file, &module);
-        if let Some(Err(error)) = tool("spirv-val", &[&file.to_string_lossy()]) {
-            panic!("{} in SPIR-V: {error}", program.name());
+        for program in [program, with_gradients::<M>(Target::Exact)] {
+            let module = spirv::module(&program).expect("naga accepts it");
+            let file = dir.path().join("module.spv");
+            write_words(&file, &module);
+            if let Some(Err(error)) = tool("spirv-val", &[&file.to_string_lossy()]) {
+                panic!("{} in SPIR-V: {error}", program.name());
+            }
         }
     }
 }
@@ -244,6 +246,19 @@ impl Visitor for Traps {
                     "a literal of infinity"
                 );
             }
+            // Drivers take `h < 1 || -1 < h` for true.
+            let functions = program.functions().iter();
+            let tested = functions.flat_map(|function| {
+                let (graph, schedule) = (function.graph(), function.schedule());
+                let is_test = |place: &u32| graph.tested_number(*place).is_some();
+                schedule.into_iter().filter(is_test)
+            });
+            let tested = tested.count();
+            for text in [&wgsl, &glsl, &hlsl, &msl] {
+                // Itself, and of the second operand of `min` and `max`.
+                let found = text.matches("is_number(").count();
+                assert_eq!(found, 3 + tested, "{}: tests of numbers", program.name());
+            }
             // The language's own choice among NaN.
             for line in wgsl.lines() {
                 assert!(!line.contains(" min(") && !line.contains(" max("), "{line}");
@@ -257,37 +272,41 @@ fn text_avoids_what_compilers_do() {
     every_model(Traps);
 }
 
-/// Words against reordering are on every arithmetic instruction.
+/// Instructions of a kind in a module.
+fn count(words: &[u32], op: u32) -> usize {
+    let (mut at, mut count) = (5, 0);
+    while at < words.len() {
+        count += usize::from(words[at] & 0xffff == op);
+        at += (words[at] >> 16) as usize;
+    }
+    count
+}
+
+/// Words against reordering are on every arithmetic instruction, and with exact arithmetic every entry point asks for IEEE's numbers.
 #[test]
 fn spirv_keeps_the_order_of_arithmetic() {
-    let program = Program::of::<hairis_variants::KajiyaKay>(Target::Exact);
-    let mut source = print(&program, Language::Wgsl);
-    source += &driver(&program, Language::Wgsl);
-    let plain = spirv::translate(&source).expect("naga accepts it");
-    let kept = spirv::module(&program).expect("naga accepts it");
-    let count = |words: &[u32], op: u32| {
-        let (mut at, mut count) = (5, 0);
-        while at < words.len() {
-            count += usize::from(words[at] & 0xffff == op);
-            at += (words[at] >> 16) as usize;
+    for target in [Target::Exact, Target::Gpu] {
+        let program = Program::of::<hairis_variants::KajiyaKay>(target);
+        let mut source = print(&program, Language::Wgsl);
+        source += &driver(&program, Language::Wgsl);
+        let plain = spirv::translate(&source).expect("naga accepts it");
+        let kept = spirv::module(&program).expect("naga accepts it");
+        let arithmetic = |words: &[u32]| -> usize {
+            let instructions = [127, 129, 131, 133, 136];
+            instructions.iter().map(|op| count(words, *op)).sum()
+        };
+        assert!(arithmetic(&plain) > 500, "instructions of arithmetic");
+        let decorations = count(&plain, 71) + arithmetic(&kept);
+        assert_eq!(count(&kept, 71), decorations, "a decoration each");
+        let [entry_points, controls] = [15, 17].map(|op| count(&kept, op));
+        let modes = count(&kept, 16);
+        if target == Target::Gpu {
+            assert_eq!((modes, controls), (entry_points, 1), "nothing is asked");
+            assert_eq!(kept.len(), plain.len() + 3 * arithmetic(&kept), "no more");
+        } else {
+            assert_eq!((modes, controls), (4 * entry_points, 4), "three modes each");
         }
-        count
-    };
-    let arithmetic: usize = [127, 129, 131, 133, 136]
-        .iter()
-        .map(|op| count(&kept, *op))
-        .sum();
-    assert!(arithmetic > 500, "{arithmetic} instructions of arithmetic");
-    assert_eq!(
-        kept.len(),
-        plain.len() + 3 * arithmetic,
-        "a decoration each"
-    );
-    assert_eq!(
-        count(&kept, 71),
-        count(&plain, 71) + arithmetic,
-        "a decoration each"
-    );
+    }
 }
 
 /// Every literal is read as the float it stands for, by a reader of decimals in double precision.
