@@ -1,6 +1,6 @@
 //! Gradients against differences in double precision, and at the edges.
 
-use crate::support::{Case, Random, every_model};
+use crate::support::{Case, Random, differing, every_model, same};
 use hairis_shaders::{Call, Function, Program, Rounding, Target};
 use hairis_variants::{Registered, Visitor};
 
@@ -53,6 +53,30 @@ impl Weighted {
             gradient,
             function,
         }
+    }
+
+    /// Compares gradients with those of the graph, bit by bit after `read`.
+    pub(crate) fn check_bits(
+        &self,
+        got: &[f32],
+        rounding: Rounding,
+        read: impl Fn(f32) -> f32,
+        name: &str,
+    ) {
+        let gradient = &self.gradient;
+        let read = |results: &[f32]| -> Vec<f32> { results.iter().map(|x| read(*x)).collect() };
+        let expected = self.all.iter();
+        let expected: Vec<_> = expected
+            .map(|inputs| read(&gradient.run(inputs, rounding)))
+            .collect();
+        let got = read(got);
+        let count = differing(gradient, &got, &expected);
+        let places: Vec<_> = gradient.output().places().collect();
+        let pairs = got.iter().zip(expected.iter().flatten());
+        if let Some((at, (a, b))) = pairs.enumerate().find(|(_, (a, b))| !same(**a, **b)) {
+            println!("{name}: {} is {a}, not {b}", places[at % places.len()]);
+        }
+        assert_eq!(count, 0, "{name}: gradients that differ from the graph's");
     }
 
     /// Compares gradients with differences in double precision: 1e-6 in the median, 1e-3 for 99.9%.

@@ -2,6 +2,7 @@
 
 mod bits;
 mod c;
+mod cuda;
 mod gradients;
 mod languages;
 mod material;

@@ -1,6 +1,7 @@
 //! Each operation alone, in every language that runs here: a fault in a printer's table is found.
 
 use crate::c::{compiled, compiled_metal, run};
+use crate::cuda;
 use crate::languages::{compile_glsl, compile_hlsl, write_words};
 use crate::support::{Random, differing, same};
 use crate::vulkan::{Driver, Host};
@@ -51,22 +52,24 @@ fn check(program: &Program, got: &[f32], expected: &[Vec<f32>], language: &str) 
     if differing(function, got, expected) == 0 {
         return;
     }
-    for (case, (got, expected)) in got
-        .chunks(function.results().len())
-        .zip(expected)
-        .enumerate()
-    {
-        for ((place, got), expected) in function.results().iter().zip(got).zip(expected) {
+    let mut wrong = String::new();
+    for (at, place) in function.results().iter().enumerate() {
+        let pairs = got.chunks(function.results().len()).zip(expected);
+        let pairs = pairs.map(|(got, expected)| (got[at], expected[at]));
+        let mut differ = pairs
+            .enumerate()
+            .filter(|(_, (got, expected))| !same(*got, *expected));
+        if let Some((case, (got, expected))) = differ.next() {
             let (kind, triple) = (
                 function.graph().node(*place).kind,
                 &operands()[3 * case..][..3],
             );
-            assert!(
-                same(*got, *expected),
-                "{kind:?} in {language} of {triple:?}: {got}, not {expected}"
-            );
+            let others = differ.count();
+            wrong +=
+                &format!("{kind:?} of {triple:?}: {got}, not {expected}, and {others} others\n");
         }
     }
+    panic!("{language}:\n{wrong}");
 }
 
 #[test]
@@ -80,6 +83,20 @@ fn every_operation_is_right_in_c() {
             let got = run(&binary, "operations", &operands());
             check(&program, &got, &expected(&program, rounding), "C");
         }
+    }
+}
+
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn every_operation_is_right_in_cuda() {
+    if !cuda::has_gpu() {
+        return;
+    }
+    for target in [Target::Exact, Target::Fused] {
+        let program = every_operation(target);
+        let (_dir, binary) = cuda::compiled(&program, cuda::APART);
+        let got = run(&binary, "operations", &operands());
+        check(&program, &got, &expected(&program, Rounding::Once), "CUDA");
     }
 }
 
@@ -101,15 +118,18 @@ fn every_operation_is_right_on_a_driver() {
     let Some(driver) = Driver::new(Host::Vulkan) else {
         return;
     };
-    // `fma` of this driver rounds twice.
-    for target in [Target::Exact, Target::Gpu] {
+    for target in [Target::Exact, Target::Fused] {
         let program = every_operation(target);
-        let expected = expected(&program, Rounding::Twice);
+        let expected = expected(&program, driver.rounding());
         let module = driver.dir.path().join("module.spv");
         write_words(&module, &spirv::module(&program).expect("naga accepts it"));
         let function = &program.functions()[0];
         let got = driver.run(&module, "operations", function, &operands());
         check(&program, &got, &expected, "SPIR-V");
+        // Other languages have no word for how divisions round.
+        if !driver.is_software {
+            continue;
+        }
         if let Some(module) = compile_glsl(&program, driver.dir.path()) {
             let got = driver.run(&module, "main", function, &operands());
             check(&program, &got, &expected, "GLSL");

@@ -1,5 +1,6 @@
 //! Cases, and what the models return for them.
 
+use core::cell::RefCell;
 use core::fmt;
 use hairis::model::{Model, SampleLanes, Single};
 use hairis::simd::{Level, Vec3x, f32x8};
@@ -272,10 +273,63 @@ pub(crate) fn differing(function: &Function, got: &[f32], expected: &[Vec<f32>])
         "{}: count of results",
         function.name()
     );
-    let pairs = got.chunks(len).zip(expected);
-    pairs
-        .filter(|(got, expected)| !got.iter().zip(*expected).all(|(a, b)| same(*a, *b)))
-        .count()
+    let is_other = |(got, expected): &(&[f32], &Vec<f32>)| {
+        let places = function.output().places();
+        let mut numbers = got.iter().zip(*expected).zip(places);
+        numbers.any(|((a, b), place)| {
+            let is_other = !same(*a, *b);
+            if is_other {
+                println!("{}: {place} is {a}, not {b}", function.name());
+            }
+            is_other
+        })
+    };
+    let mut pairs = got.chunks(len).zip(expected);
+    // The first is named.
+    match pairs.by_ref().find(is_other) {
+        Some(_) => {
+            let count = pairs
+                .filter(|(got, expected)| !got.iter().zip(*expected).all(|(a, b)| same(*a, *b)))
+                .count();
+            count + 1
+        }
+        None => 0,
+    }
+}
+
+/// The number, 0 without its sign.
+pub(crate) fn unsigned(x: f32) -> f32 {
+    if x == 0.0 { 0.0 } else { x }
+}
+
+/// Functions with cases that differ, so that one run names all of them.
+#[derive(Default)]
+pub(crate) struct Tally(RefCell<Vec<String>>);
+
+impl Tally {
+    /// Compares results with those expected.
+    pub(crate) fn count(
+        &self,
+        function: &Function,
+        got: &[f32],
+        expected: &[Vec<f32>],
+        name: &str,
+    ) {
+        let (count, all) = (differing(function, got, expected), expected.len());
+        let line = format!("{name}: {count} of {all} differ");
+        println!("{line}");
+        if count > 0 {
+            self.0.borrow_mut().push(line);
+        }
+    }
+
+    /// # Panics
+    ///
+    /// If any differed.
+    pub(crate) fn check(self) {
+        let lines = self.0.into_inner();
+        assert!(lines.is_empty(), "{}", lines.join("\n"));
+    }
 }
 
 /// Runs a test of each model of the list.

@@ -4,6 +4,9 @@
 //! |---|---|
 //! | compilers take sums apart, and a bell is up to 41% off | `text_avoids_what_compilers_do`, `plain_shaders_have_the_accuracy_of_one_lane` (WGSL), `fast_math_is_refused` (C) |
 //! | a product with 0 is taken for 0, and NaN is lost | `plain_shaders_have_the_accuracy_of_one_lane` |
+//! | a GPU's `min` loses NaN, and drivers take a choice by a comparison for it; they take `h < 1 or -1 < h` for true | `text_avoids_what_compilers_do`, and on a GPU `plain_shaders_have_the_accuracy_of_one_lane` |
+//! | a GPU divides and takes roots with errors, and flushes denormals | `spirv_keeps_the_order_of_arithmetic`, and on a GPU `shaders_that_keep_their_order_have_the_bits_of_one_lane` |
+//! | nvcc contracts, and warns of functions that nobody calls | `cuda_has_the_bits_of_one_lane` |
 //! | `fma` rounds twice | `differences_of_products_survive_split_fma`, `shaders_that_keep_their_order_have_the_bits_of_one_lane` |
 //! | products and sums are contracted | `contraction_is_found`, `clang_keeps_products_and_sums_apart`, `spirv_keeps_the_order_of_arithmetic` |
 //! | WGSL has no infinity, and leaves the operand open that `min` and `max` return for NaN | `text_avoids_what_compilers_do`, `every_operation_is_right_on_a_driver` |

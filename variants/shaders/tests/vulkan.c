@@ -1,6 +1,7 @@
 // Runs a compute shader of one input and one output buffer on the first Vulkan device.
 //
 //   vulkan MODULE.spv ENTRY INPUT OUTPUT FLOATS_PER_CALL FLOATS_PER_RESULT
+//   vulkan                                     prints the names of the device and of its driver
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,12 +32,7 @@ static void *read_file(const char *path, size_t *size) {
 }
 
 int main(int argc, char **argv) {
-    if (argc != 7) return 2;
-    size_t module_size, input_size;
-    const void *words = read_file(argv[1], &module_size), *input = read_file(argv[3], &input_size);
-    const size_t calls = input_size / 4 / (size_t)atoi(argv[5]);
-    const size_t sizes[2] = {input_size, calls * 4 * (size_t)atoi(argv[6])};
-
+    if (argc != 1 && argc != 7) return 2;
     VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_2};
     VkInstanceCreateInfo instance_info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, .pApplicationInfo = &application};
     VkInstance instance;
@@ -48,6 +44,20 @@ int main(int argc, char **argv) {
         fprintf(stderr, "no Vulkan device\n");
         return 1;
     }
+    if (argc == 1) {
+        VkPhysicalDeviceDriverProperties driver = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+        VkPhysicalDeviceProperties2 properties = {
+            .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
+        vkGetPhysicalDeviceProperties2(physical, &properties);
+        printf("%s, %s %s%s\n", properties.properties.deviceName, driver.driverName, driver.driverInfo,
+            properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? ", in software" : "");
+        return 0;
+    }
+    size_t module_size, input_size;
+    const void *words = read_file(argv[1], &module_size), *input = read_file(argv[3], &input_size);
+    const size_t calls = input_size / 4 / (size_t)atoi(argv[5]);
+    const size_t sizes[2] = {input_size, calls * 4 * (size_t)atoi(argv[6])};
+
     const float priority = 1;
     VkDeviceQueueCreateInfo queue_info = {
         .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, .queueCount = 1, .pQueuePriorities = &priority};

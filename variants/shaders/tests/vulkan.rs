@@ -3,9 +3,11 @@
 
 use crate::gradients::Weighted;
 use crate::languages::{compile_glsl, tool, write_words};
-use crate::support::{Case, case_count, differing, every_model, same};
+use crate::support::{Case, Tally, case_count, every_model, unsigned};
 use hairis_shaders::driver as shader_driver;
-use hairis_shaders::{Call, Function, Language, Program, Rounding, Target, print, spirv};
+use hairis_shaders::{
+    Call, Function, Language, Program, Rounding, Target, every_operation, print, spirv,
+};
 use hairis_variants::{Registered, Visitor};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,6 +26,8 @@ pub(crate) enum Host {
 /// A host that is there, and a folder for its files.
 pub(crate) struct Driver {
     pub(crate) dir: TempDir,
+    /// Whether every division and square root of it rounds to nearest, whatever the language.
+    pub(crate) is_software: bool,
     host: Host,
     program: PathBuf,
 }
@@ -33,6 +37,7 @@ impl Driver {
     pub(crate) fn new(host: Host) -> Option<Self> {
         let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
         let dir = TempDir::new().expect("a folder for shaders");
+        let mut is_software = true;
         let program = match host {
             Host::Browser => {
                 if std::env::var_os("HAIRIS_CHROMIUM").is_none() {
@@ -49,10 +54,44 @@ impl Driver {
                     println!("no Vulkan to link with: skipped: {error}");
                     return None;
                 }
+                let device = Command::new(&program).output().expect("it starts");
+                let device = String::from_utf8_lossy(&device.stdout).into_owned();
+                print!("{device}");
+                is_software = device.contains("in software");
                 program
             }
         };
-        Some(Self { dir, host, program })
+        Some(Self {
+            dir,
+            is_software,
+            host,
+            program,
+        })
+    }
+
+    /// How often `fma` rounds: drivers may choose.
+    pub(crate) fn rounding(&self) -> Rounding {
+        let program = every_operation(Target::Fused);
+        let function = &program.functions()[0];
+        let module = self.dir.path().join("operations.spv");
+        write_words(&module, &spirv::module(&program).expect("naga accepts it"));
+        let numbers = [1.0 + f32::EPSILON, 1.0 - f32::EPSILON, -1.0];
+        let got = self.run(&module, "operations", function, &numbers);
+        if got == function.run(&numbers, Rounding::Once) {
+            Rounding::Once
+        } else {
+            Rounding::Twice
+        }
+    }
+
+    /// The number as it is compared: `fma` of a GPU flushes denormals, whatever the module asks for.
+    fn compared(&self, target: Target, x: f32) -> f32 {
+        let is_flushed = target == Target::Fused && !self.is_software;
+        if is_flushed && x.is_subnormal() {
+            0.0
+        } else {
+            x
+        }
     }
 
     /// Module of a program as plain WGSL, with an entry point per function.
@@ -108,15 +147,10 @@ impl Driver {
 /// Calls whose results are compared: those of a shading point are parts of them.
 const CALLS: [Call; 3] = [Call::EvalHit, Call::SampleHit, Call::Material];
 
-/// The number, 0 without its sign: drivers may lose it, as `NoContraction` does not keep it. No constant of
-/// a material and no derivative has a meaning that depends on it.
-fn unsigned(x: f32) -> f32 {
-    if x == 0.0 { 0.0 } else { x }
-}
+#[derive(Clone, Copy)]
+struct Kept<'a>(&'a Tally);
 
-struct Kept;
-
-impl Visitor for &Kept {
+impl Visitor for Kept<'_> {
     type Output = ();
 
     fn visit<M: Registered>(self) {
@@ -124,8 +158,8 @@ impl Visitor for &Kept {
             return;
         };
         let cases = Case::<M>::many(case_count(4096), 44);
-        // `fma` of WGSL may be two operations, and is on this driver.
-        for target in [Target::Exact, Target::Gpu] {
+        let rounding = driver.rounding();
+        for target in [Target::Exact, Target::Fused] {
             let mut program = Program::of::<M>(target);
             let calls = CALLS.map(|call| program.function(call).clone());
             program.keep(calls.to_vec());
@@ -135,29 +169,28 @@ impl Visitor for &Kept {
                 let inputs: Vec<f32> = cases.iter().flat_map(|case| case.arguments(call)).collect();
                 let expected = cases.iter().map(|case| match target {
                     Target::Exact => case.results(call),
-                    _ => function.run(&case.arguments(call), Rounding::Twice),
+                    _ => function.run(&case.arguments(call), rounding),
                 });
-                let compared = |numbers: Vec<f32>| match call {
-                    Call::Material => numbers.into_iter().map(unsigned).collect(),
-                    _ => numbers,
+                // Drivers may lose the sign of 0, which means nothing in a material, nor in a derivative.
+                let compared = |numbers: Vec<f32>| -> Vec<f32> {
+                    let numbers = numbers.into_iter().map(|x| driver.compared(target, x));
+                    match call {
+                        Call::Material => numbers.map(unsigned).collect(),
+                        _ => numbers.collect(),
+                    }
                 };
                 let expected: Vec<_> = expected.map(compared).collect();
                 let got = compared(driver.run(&module, call.name(), function, &inputs));
-                let count = differing(function, &got, &expected);
-                println!(
-                    "{} {} {target:?}: {count} of {} differ",
-                    program.name(),
-                    call.name(),
-                    cases.len()
-                );
-                assert_eq!(count, 0, "{} {} {target:?}", program.name(), call.name());
-                if target == Target::Exact {
+                let name = format!("{} {} {target:?}", program.name(), call.name());
+                self.0.count(function, &got, &expected, &name);
+                // GLSL has no word for how divisions round.
+                if target == Target::Exact && driver.is_software {
                     let mut one = program.clone();
                     one.keep(vec![function.clone()]);
                     if let Some(module) = compile_glsl(&one, driver.dir.path()) {
                         let got = compared(driver.run(&module, "main", function, &inputs));
-                        let count = differing(function, &got, &expected);
-                        assert_eq!(count, 0, "{} {} in GLSL", program.name(), call.name());
+                        self.0
+                            .count(function, &got, &expected, &format!("{name} in GLSL"));
                     }
                 }
             }
@@ -168,7 +201,9 @@ impl Visitor for &Kept {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn shaders_that_keep_their_order_have_the_bits_of_one_lane() {
-    every_model(&Kept);
+    let tally = Tally::default();
+    every_model(Kept(&tally));
+    tally.check();
 }
 
 /// Errors of values and densities relative to double precision, of arguments that are numbers: the quantiles 50%, 99% and
@@ -195,6 +230,55 @@ fn quantiles(got: &[f32], exact: &[f64]) -> [f64; 3] {
     })
 }
 
+/// Compares the results of `EvalHit` with double precision, whose errors are to be less than twice those of one lane, and checks that
+/// those of arguments that are no numbers, also of `SampleHit`, are black. `results` runs one of these two functions.
+pub(crate) fn check_accuracy<M: Registered>(
+    cases: &[Case<M>],
+    [eval, sample]: [&Function; 2],
+    name: &str,
+    results: impl Fn(&Function, &[f32]) -> Vec<f32>,
+) {
+    let inputs =
+        |call| -> Vec<f32> { cases.iter().flat_map(|case| case.arguments(call)).collect() };
+    let evals = results(eval, &inputs(Call::EvalHit));
+    let samples = results(sample, &inputs(Call::SampleHit));
+    let one: Vec<f32> = cases
+        .iter()
+        .flat_map(|case| case.results(Call::EvalHit))
+        .collect();
+    let exact_program = Program::of::<M>(Target::Exact);
+    let exact: Vec<f64> = cases
+        .iter()
+        .flat_map(|case| {
+            let arguments = case.arguments(Call::EvalHit);
+            let arguments: Vec<f64> = arguments.into_iter().map(f64::from).collect();
+            exact_program
+                .function(Call::EvalHit)
+                .run_double(&arguments)
+                .0
+        })
+        .collect();
+    let (of_one, of_these) = (quantiles(&one, &exact), quantiles(&evals, &exact));
+    println!("{name}: {of_these:?}, one lane {of_one:?}");
+    for (these, one) in of_these.iter().zip(of_one) {
+        assert!(*these < 2.0 * one.max(1e-6), "{name}");
+    }
+    // What is no direction is black.
+    for ((case, eval), sample) in cases.iter().zip(evals.chunks(4)).zip(samples.chunks(11)) {
+        let is_number = |x: &[f32; 3]| x.iter().all(|x| x.is_finite());
+        if !is_number(&case.wo) || !is_number(&case.wi) {
+            assert_eq!(eval, [0.0; 4], "{name}: {case}");
+        }
+        if !is_number(&case.wo) || case.xi.iter().any(|x| x.is_nan()) {
+            assert_eq!(
+                sample[3..],
+                [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0],
+                "{name}: {case}"
+            );
+        }
+    }
+}
+
 #[derive(Clone, Copy)]
 struct Plain(Host);
 
@@ -206,65 +290,16 @@ impl Visitor for Plain {
             return;
         };
         let cases = Case::<M>::many(case_count(4096), 45);
-        let inputs: Vec<f32> = cases
-            .iter()
-            .flat_map(|case| case.arguments(Call::EvalHit))
-            .collect();
-        let one: Vec<f32> = cases
-            .iter()
-            .flat_map(|case| case.results(Call::EvalHit))
-            .collect();
-        let exact_program = Program::of::<M>(Target::Exact);
-        let exact: Vec<f64> = cases
-            .iter()
-            .flat_map(|case| {
-                let arguments = case.arguments(Call::EvalHit);
-                let arguments: Vec<f64> = arguments.into_iter().map(f64::from).collect();
-                exact_program
-                    .function(Call::EvalHit)
-                    .run_double(&arguments)
-                    .0
-            })
-            .collect();
-        let of_one = quantiles(&one, &exact);
         for target in [Target::Exact, Target::Gpu, Target::GpuNative] {
             let mut program = Program::of::<M>(target);
             let calls = CALLS.map(|call| program.function(call).clone());
             program.keep(calls.to_vec());
             let module = driver.plain(&program);
-            let got = driver.run(&module, Call::EvalHit.name(), &calls[0], &inputs);
-            let of_shader = quantiles(&got, &exact);
-            println!(
-                "{} {target:?}: {of_shader:?}, one lane {of_one:?}",
-                program.name()
-            );
-            for (shader, one) in of_shader.iter().zip(of_one) {
-                assert!(
-                    *shader < 2.0 * one.max(1e-6),
-                    "{} {target:?}",
-                    program.name()
-                );
-            }
-            // What is no direction is black.
-            let samples: Vec<f32> = cases
-                .iter()
-                .flat_map(|case| case.arguments(Call::SampleHit))
-                .collect();
-            let samples = driver.run(&module, Call::SampleHit.name(), &calls[1], &samples);
-            for ((case, got), sample) in cases.iter().zip(got.chunks(4)).zip(samples.chunks(11)) {
-                let is_number = |x: &[f32; 3]| x.iter().all(|x| x.is_finite());
-                if !is_number(&case.wo) || !is_number(&case.wi) {
-                    assert_eq!(got, [0.0; 4], "{}: {case}", program.name());
-                }
-                if !is_number(&case.wo) || case.xi.iter().any(|x| x.is_nan()) {
-                    assert_eq!(
-                        sample[3..],
-                        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0],
-                        "{}: {case}",
-                        program.name()
-                    );
-                }
-            }
+            let name = format!("{} {target:?}", program.name());
+            let [eval, sample, _] = &calls;
+            check_accuracy(&cases, [eval, sample], &name, |function, inputs| {
+                driver.run(&module, function.name(), function, inputs)
+            });
         }
     }
 }
@@ -281,23 +316,6 @@ fn shaders_of_a_browser_have_the_accuracy_of_one_lane() {
     every_model(Plain(Host::Browser));
 }
 
-/// Compares gradients with those of the graph, bit by bit.
-fn check_bits(cases: &Weighted, got: &[f32], name: &str) {
-    let gradient = &cases.gradient;
-    let expected = cases.all.iter();
-    let expected: Vec<_> = expected
-        .map(|inputs| gradient.run(inputs, Rounding::Twice))
-        .map(|results| results.into_iter().map(unsigned).collect::<Vec<_>>())
-        .collect();
-    let count = differing(gradient, got, &expected);
-    let places: Vec<_> = gradient.output().places().collect();
-    let pairs = got.iter().zip(expected.iter().flatten());
-    if let Some((at, (a, b))) = pairs.enumerate().find(|(_, (a, b))| !same(**a, **b)) {
-        println!("{name}: {} is {a}, not {b}", places[at % places.len()]);
-    }
-    assert_eq!(count, 0, "{name}: gradients that differ from the graph's");
-}
-
 #[derive(Clone, Copy)]
 struct Gradients(Host);
 
@@ -308,7 +326,8 @@ impl Visitor for Gradients {
         let Some(driver) = Driver::new(self.0) else {
             return;
         };
-        for target in [Target::Exact, Target::Gpu] {
+        let rounding = (self.0 == Host::Vulkan).then(|| driver.rounding());
+        for target in [Target::Exact, Target::Fused, Target::Gpu] {
             let mut program = Program::of::<M>(target);
             let cases =
                 [Call::Material, Call::EvalHit].map(|call| Weighted::new::<M>(&program, call));
@@ -323,9 +342,11 @@ impl Visitor for Gradients {
             for cases in &cases {
                 let gradient = &cases.gradient;
                 let name = format!("{} {} {target:?}", program.name(), gradient.name());
-                if self.0 == Host::Vulkan {
-                    let got: Vec<_> = run(&kept, cases).into_iter().map(unsigned).collect();
-                    check_bits(cases, &got, &name);
+                if target != Target::Gpu
+                    && let Some(rounding) = rounding
+                {
+                    let read = |x| unsigned(driver.compared(target, x));
+                    cases.check_bits(&run(&kept, cases), rounding, read, &name);
                 }
                 let got = run(&plain, cases);
                 let got = got.chunks(gradient.output().len()).map(<[f32]>::to_vec);

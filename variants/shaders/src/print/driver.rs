@@ -11,7 +11,8 @@ use crate::record::Field;
 /// - WGSL: a compute shader per function, by the function's name, over buffers 0 (read) and 1 (written) of group 0;
 ///   workgroups of 64.
 /// - GLSL: `main` of the last function alone, over the same buffers of a Vulkan shader.
-/// - C: `main` takes the name of a function, reads standard input and writes standard output.
+/// - C: `main` takes the name of a function, reads standard input and writes standard output. Compiled as CUDA, it runs the
+///   function on the GPU, one thread per call.
 ///
 /// # Panics
 ///
@@ -99,16 +100,57 @@ fn glsl(program: &Program) -> String {
     )
 }
 
+/// Ways to run a function over all calls: threads of a GPU, one per call, or a loop.
+const C_HEAD: &str = "\
+#include <stdio.h>
+#include <stdlib.h>
+#if defined(__CUDACC__)
+#define RUN static __global__ void
+#define EACH(i, n) const unsigned i = blockIdx.x * blockDim.x + threadIdx.x; if (i < n)
+#else
+#define RUN static void
+#define EACH(i, n) for (unsigned i = 0; i < n; i++)
+#endif
+";
+
+/// End of `main`, after `run` and the counts of numbers `in` and `out` are set.
+const C_MAIN: &str = "    \
+    if (!run) return 2;
+    for (;;) {
+        n += fread(inputs + n, sizeof(float), room - n, stdin);
+        if (n < room) break;
+        inputs = (float *)realloc(inputs, (room *= 2) * sizeof(float));
+    }
+    n /= in;
+    outputs = (float *)malloc(n * out * sizeof(float));
+#if defined(__CUDACC__)
+    float *at[2];
+    cudaMalloc(&at[0], n * in * sizeof(float));
+    cudaMalloc(&at[1], n * out * sizeof(float));
+    cudaMemcpy(at[0], inputs, n * in * sizeof(float), cudaMemcpyHostToDevice);
+    run<<<(unsigned)((n + 63) / 64), 64>>>(at[0], at[1], (unsigned)n);
+    cudaMemcpy(outputs, at[1], n * out * sizeof(float), cudaMemcpyDeviceToHost);
+    const cudaError_t error = cudaGetLastError();
+    if (error) {
+        fprintf(stderr, \"%s\\n\", cudaGetErrorString(error));
+        return 1;
+    }
+#else
+    run(inputs, outputs, (unsigned)n);
+#endif
+    return fwrite(outputs, sizeof(float), n * out, stdout) != n * out;
+}
+";
+
 fn c(program: &Program) -> String {
-    let mut out = "#include <stdio.h>\n#include <stdlib.h>\n".to_owned();
-    let mut calls = String::new();
+    let (mut out, mut calls) = (C_HEAD.to_owned(), String::new());
     for function in program.functions() {
         let name = function.name();
         let count: usize = function.arguments().iter().map(Argument::len).sum();
         let statements = statements(program, Language::C, function).join("\n        ");
         out += &format!(
-            "static void run_{name}(const float *inputs, float *outputs, unsigned n) {{\n    \
-             for (unsigned i = 0; i < n; i++) {{\n        {statements}\n    }}\n}}\n"
+            "RUN run_{name}(const float *inputs, float *outputs, unsigned n) {{\n    \
+             EACH(i, n) {{\n        {statements}\n    }}\n}}\n"
         );
         calls += &format!(
             "    if (!strcmp(argv[1], \"{name}\")) {{ run = run_{name}; in = {count}; out = {}; }}\n",
@@ -118,11 +160,6 @@ fn c(program: &Program) -> String {
     out + &format!(
         "int main(int argc, char **argv) {{\n    void (*run)(const float *, float *, unsigned) = 0;\n    \
          size_t in = 0, out = 0, n = 0, room = 1u << 20;\n    \
-         float *inputs = (float *)malloc(room * sizeof(float));\n    float *outputs;\n    if (argc < 2) return 2;\n{calls}    \
-         if (!run) return 2;\n    for (;;) {{\n        \
-         n += fread(inputs + n, sizeof(float), room - n, stdin);\n        if (n < room) break;\n        \
-         inputs = (float *)realloc(inputs, (room *= 2) * sizeof(float));\n    }}\n    n /= in;\n    \
-         outputs = (float *)malloc(n * out * sizeof(float));\n    run(inputs, outputs, (unsigned)n);\n    \
-         return fwrite(outputs, sizeof(float), n * out, stdout) != n * out;\n}}\n"
+         float *inputs = (float *)malloc(room * sizeof(float)), *outputs;\n    if (argc < 2) return 2;\n{calls}{C_MAIN}"
     )
 }

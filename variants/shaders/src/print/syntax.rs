@@ -38,7 +38,9 @@ const C: &str = "\
 #pragma fp_contract(off)
 #endif
 // Loops over a function are vectorised where it is inlined.
-#if defined(__CUDACC__)
+#if defined(__CUDACC__) && defined(__GNUC__)
+#define HAIRIS_FN static __host__ __device__ __forceinline__ __attribute__((unused))
+#elif defined(__CUDACC__)
 #define HAIRIS_FN static __host__ __device__ __forceinline__
 #elif defined(__GNUC__)
 #define HAIRIS_FN static inline __attribute__((always_inline, unused))
