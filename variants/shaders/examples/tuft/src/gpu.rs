@@ -5,20 +5,21 @@ use glam::Vec3;
 use std::error::Error;
 use wgpu::{
     BufferDescriptor, BufferUsages, CommandEncoderDescriptor, ComputePassDescriptor,
-    ComputePipelineDescriptor, DeviceDescriptor, Instance, MapMode, PollType,
+    ComputePipelineDescriptor, DeviceDescriptor, DeviceType, Instance, MapMode, PollType,
     RequestAdapterOptions, ShaderModuleDescriptor, ShaderSource,
 };
 
-/// Sum of the samples of each pixel, by `draw` of the module `source`. Buffers 0 to 2 are the hairs, the numbers of the material, and
+/// Sum of the samples of each pixel, by `draw` of the module `source`, and whether the adapter is a driver in software. Buffers 0 to 2 are the hairs, the numbers of the material, and
 /// the picture.
 pub(crate) fn draw(
     source: &str,
     hairs: &[(Vec3, Vec3)],
     material: &[f32],
-) -> Result<Vec<Vec3>, Box<dyn Error>> {
+) -> Result<(Vec<Vec3>, bool), Box<dyn Error>> {
     let instance = Instance::default();
     let adapter = pollster::block_on(instance.request_adapter(&RequestAdapterOptions::default()))?;
-    println!("{}", adapter.get_info().name);
+    let info = adapter.get_info();
+    println!("{}", info.name);
     let request = adapter.request_device(&DeviceDescriptor::default());
     let (device, queue) = pollster::block_on(request)?;
 
@@ -96,8 +97,6 @@ pub(crate) fn draw(
     let bytes = read.slice(..).get_mapped_range()?;
     let numbers: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
     let (pixels, _) = numbers.as_chunks::<4>();
-    Ok(pixels
-        .iter()
-        .map(|[r, g, b, _]| Vec3::new(*r, *g, *b))
-        .collect())
+    let picture = pixels.iter().map(|[r, g, b, _]| Vec3::new(*r, *g, *b));
+    Ok((picture.collect(), info.device_type == DeviceType::Cpu))
 }
