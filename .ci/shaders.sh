@@ -2,6 +2,7 @@
 # Promise: generated source is what it says. C and C++ (gcc, clang), SPIR-V and GLSL on a Vulkan driver have the bits of one lane
 # for every model; plain WGSL has its accuracy there and on WebGPU of headless Chromium, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C
 # and PTX compile; gradients in C have the bits of the graph; the example draws the same picture on wgpu and on the CPU.
+# Where nvcc and a GPU are, CUDA has the bits of one lane as well.
 # Debian's packages: gcc, g++, clang, glslang-tools, spirv-tools, libvulkan-dev, mesa-vulkan-drivers; node, npm, and Chromium as in
 # .ci/page.sh.
 # A tool that is missing is installed where apt can, and named where it cannot: its tests are skipped.

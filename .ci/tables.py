@@ -38,10 +38,11 @@ class Record:
     def caption(self, directory):
         """Record, machine, commit and date."""
         link = os.path.relpath(RECORDS + self.name, directory)
-        if self.fact("CPU") == "any":
+        processor = "GPU" if any(note.startswith("GPU: ") for note in self.notes) else "CPU"
+        if self.fact(processor) == "any":
             return f"*[Record]({link}), which a test writes and holds.*"
-        cpu = re.sub(r"\((R|TM)\)", "", self.fact("CPU"))
-        facts = f"{cpu}, commit {self.fact('commit')[:7]}, {self.fact('date')}"
+        machine = re.sub(r"\((R|TM)\)", "", self.fact(processor))
+        facts = f"{machine}, commit {self.fact('commit')[:7]}, {self.fact('date')}"
         return f"*[Record]({link}) of {facts}.*"
 
 
@@ -147,6 +148,26 @@ def gradients():
     return record, ["", *levels], rows
 
 
+def cuda():
+    """Calls on a GPU: billions per second, and over the formulas with the same flags."""
+    record = Record("cuda.csv")
+    rates = {(row["model"], row["call"], row["variant"]): 1 / float(row["ns"]) for row in record.rows}
+    models = {"gaussian": "Gaussian", "gaussian_matched": "Gaussian, matched", "cauchy": "Cauchy", "cauchy_matched": "Cauchy, matched",
+              "kajiya_kay": "Kajiya-Kay", "chiang": "Chiang"}
+    variants = {"port": None, "exact": "port", "fused": "port", "gpu-native": "port", "port fast": None, "fused fast": "port fast",
+                "gpu-native fast": "port fast"}
+
+    def cell(model, call, variant, base):
+        rate, port = (rates.get((model, call, name)) for name in (variant, base))
+        return ("-" if rate is None else three(rate)) + (f", **{rate / port:.2f}×**" if port else "")
+
+    calls = dict.fromkeys(row["call"] for row in record.rows)
+    rows = [[f"{word}: `{call}`", *(cell(model, call, *pair) for pair in variants.items())]
+            for model, word in models.items() for call in calls]
+    header = ["", "formulas", "`exact`", "`fused`", "`gpu-native`", "formulas, fast math", "`fused`, fast math", "`gpu-native`, fast math"]
+    return record, header, rows
+
+
 def speed():
     """Times of a direction, and how many times as fast as the formulas."""
     record = Record("amd-epyc-family-25-model-1-stepping-1/2026-11-22.csv")
@@ -202,7 +223,7 @@ def pictures():
     return record, ["", *words.values()], rows
 
 
-TABLES = {"capi": capi, "conserving": conserving, "gradients": gradients, "hand": hand, "hits": hits, "pictures": pictures, "refits": refits, "speed": speed}
+TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "gradients": gradients, "hand": hand, "hits": hits, "pictures": pictures, "refits": refits, "speed": speed}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 

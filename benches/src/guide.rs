@@ -5,6 +5,7 @@
 //! | [`speed`] | How long does a direction take, with which call, on which instruction set? |
 //! | [`hand`] | How close do the kernels come to code that is written with intrinsics? |
 //! | [`hits`] | What do energy conservation, several materials and derivatives cost per hit? |
+//! | [`gpu`] | How many generated calls does a GPU make per second? |
 
 // Targets of links come before the paths in the Markdown files, which are for readers of the repository: the first
 // definition of a target counts.
@@ -20,3 +21,6 @@ pub mod hand {}
 #[doc = "[gradients]: https://docs.rs/hairis-gradients\n\n"]
 #[doc = include_str!("guide/hits.md")]
 pub mod hits {}
+
+#[doc = include_str!("guide/gpu.md")]
+pub mod gpu {}

@@ -7,7 +7,7 @@
 
 // Targets of links come before the paths in the Markdown file, which are for readers of the repository: the first
 // definition of a target counts.
-#[doc = "[energy]: https://docs.rs/hairis/latest/hairis/guide/energy/\n[readme]: crate\n\n"]
+#[doc = "[energy]: https://docs.rs/hairis/latest/hairis/guide/energy/\n[speed]: https://docs.rs/hairis-benches/latest/hairis_benches/guide/gpu/\n[readme]: crate\n\n"]
 #[doc = include_str!("guide/generated.md")]
 pub mod generated {}
 
