@@ -93,6 +93,17 @@ cmake -S "$capi/tests" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE
 cmake --build "$work/consumer" > /dev/null
 "$work/consumer/shared"
 "$work/consumer/static" > /dev/null
+# The folders of cargo-c and of distributions.
+moved=$work/moved
+libraries=$moved/lib/$(gcc -print-multiarch)
+rm -rf "$moved"
+mkdir -p "$libraries" "$moved/share"
+cp -r "$prefix/include" "$moved"
+cp -a "$prefix"/lib/libhairis.* "$libraries"
+cp -r "$prefix/lib/cmake" "$moved/share"
+cmake -S "$capi/tests" -B "$work/consumer-moved" -DCMAKE_PREFIX_PATH="$moved" -DCMAKE_BUILD_TYPE=Release > /dev/null
+cmake --build "$work/consumer-moved" --target shared > /dev/null
+"$work/consumer-moved/shared"
 export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
 for example in furnace.c furnace.cpp pbrt_hair.cpp resample.cpp; do
   case $example in *.c) compiler='gcc -std=c11' ;; *) compiler='g++ -std=c++17' ;; esac

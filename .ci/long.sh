@@ -53,6 +53,7 @@ wheel() {
   work=$(realpath -m "${CARGO_TARGET_DIR:-target}")/hosts
   python=$work/venv/bin/python
   [ -x "$python" ] || { echo "the wheel needs $python: run .ci/hosts.sh"; return 1; }
+  rm -rf "$work/every"
   (cd variants/python && "$work/venv/bin/maturin" build -q --locked --features every-sampler --target-dir "$work/wheel" --out "$work/every") &&
     "$python" -m pip install -q --force-reinstall --no-deps "$work"/every/*.whl || return 1
   llvm=$(ls /usr/lib/*/libLLVM.so.[0-9]* 2> /dev/null | sort -V | tail -1)

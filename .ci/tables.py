@@ -149,7 +149,7 @@ def gradients():
 
 
 def cuda():
-    """Calls on a GPU: billions per second, and over the formulas with the same flags."""
+    """Calls on a GPU: billions per second, and over the formulas with default flags or with fast math."""
     record = Record("cuda.csv")
     rates = {(row["model"], row["call"], row["variant"]): 1 / float(row["ns"]) for row in record.rows}
     models = {"gaussian": "Gaussian", "gaussian_matched": "Gaussian, matched", "cauchy": "Cauchy", "cauchy_matched": "Cauchy, matched",

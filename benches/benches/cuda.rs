@@ -171,7 +171,7 @@ fn line(program: &str, arguments: &[&str], is_last: bool) -> Option<String> {
 fn nvcc(dir: &Path, arguments: &[&str]) -> Result<(), String> {
     let output = Command::new("nvcc")
         .arg("-O3")
-        .arg(env::var("HAIRIS_ARCH").unwrap_or("-arch=native".to_owned()))
+        .arg("-arch=native")
         .arg("-I")
         .arg(dir)
         .args(arguments)

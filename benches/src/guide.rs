@@ -22,5 +22,6 @@ pub mod hand {}
 #[doc = include_str!("guide/hits.md")]
 pub mod hits {}
 
+#[doc = "[ports]: https://docs.rs/crate/hairis-benches/latest/source/benches/cuda/\n\n"]
 #[doc = include_str!("guide/gpu.md")]
 pub mod gpu {}

@@ -1,12 +1,14 @@
-# hairis::hairis, the shared library, and hairis::static: what variants/capi/install.sh or cargo-c installs. cargo-c puts libraries into the
-# folder of the architecture, as distributions do.
+# hairis::hairis, the shared library, and hairis::static: what variants/capi/install.sh installs, or cargo-c, which puts this file into `share`
+# and libraries into the folder of the architecture, as distributions do.
 get_filename_component(_hairis_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
 set(_hairis_lib "${_hairis_prefix}/lib")
-foreach(_hairis_dir "lib64" "lib/${CMAKE_LIBRARY_ARCHITECTURE}")
-  if(EXISTS "${_hairis_prefix}/${_hairis_dir}/libhairis.so.1")
-    set(_hairis_lib "${_hairis_prefix}/${_hairis_dir}")
-  endif()
-endforeach()
+if(CMAKE_CURRENT_LIST_DIR MATCHES "/share/cmake/")
+  foreach(_hairis_dir "lib64" "lib/${CMAKE_LIBRARY_ARCHITECTURE}")
+    if(EXISTS "${_hairis_prefix}/${_hairis_dir}/libhairis.so.1")
+      set(_hairis_lib "${_hairis_prefix}/${_hairis_dir}")
+    endif()
+  endforeach()
+endif()
 if(NOT TARGET hairis::hairis)
   add_library(hairis::hairis SHARED IMPORTED)
   set_target_properties(hairis::hairis PROPERTIES

@@ -185,10 +185,27 @@ fn run<G: Rows<S, N, K>, const S: usize, const N: usize, const K: usize>(
 ) {
     // A call of one packet does not clear the room of several.
     if call.len <= 8 {
-        run_in::<G, S, N, K>(&mut [[f32x8::ZERO; K]], call, all, places, level);
+        with_room::<G, S, N, K, 1>(call, all, places, level);
     } else {
-        run_in::<G, S, N, K>(&mut [[f32x8::ZERO; K]; TURNS], call, all, places, level);
+        with_room::<G, S, N, K, TURNS>(call, all, places, level);
     }
+}
+
+/// Room for that many packets on the stack, of which each function has its own.
+#[inline(never)]
+fn with_room<
+    G: Rows<S, N, K>,
+    const S: usize,
+    const N: usize,
+    const K: usize,
+    const PACKETS: usize,
+>(
+    call: &mut Call<'_, '_>,
+    all: &[f32],
+    places: &'static [usize],
+    level: Level,
+) {
+    run_in::<G, S, N, K>(&mut [[f32x8::ZERO; K]; PACKETS], call, all, places, level);
 }
 
 /// Runs the derivatives with this room. Compiled once per program.

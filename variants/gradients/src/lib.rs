@@ -23,6 +23,9 @@
 //! # Ok::<(), hairis_gradients::GradError>(())
 //! ```
 //!
+//! A call keeps numbers of four packets on the stack: at most 78 kB, but for the density of `Matched` 113 kB, and 253 kB with 25 bands.
+//! In threads with a small stack, pass eight hits at a time: they take a quarter of it.
+//!
 //! # Rules where a model is not smooth
 //!
 //! A model computes some numbers by choice: clamps, masks, minima, signs. Derivatives are those of the branch that is taken:

@@ -195,8 +195,8 @@ def test_plots() -> None:
     matplotlib.use("agg")
     bsdf = hairis.Material("gaussian", "brown", sampler="matched").prepare((0.5, 0.75**0.5, 0.0))
     curves = {line.get_label(): line.get_ydata() for line in hairis.plot.polar(bsdf).get_lines()}
-    assert set(curves) == {"r", "tt", "trt", "glint", "sum"}
-    parts = sum(np.asarray(curves[name]) for name in ("r", "tt", "trt", "glint"))
+    assert set(curves) == {"R", "TT", "TRT", "glint", "sum"}
+    parts = sum(np.asarray(curves[name]) for name in ("R", "TT", "TRT", "glint"))
     np.testing.assert_allclose(parts, np.asarray(curves["sum"]), rtol=1e-3, atol=1e-5)
     image = hairis.plot.sphere(bsdf, resolution=32).get_images()[0].get_array()
     assert image is not None and image.shape == (32, 64) and np.isfinite(image).all()

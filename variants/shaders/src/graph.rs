@@ -203,7 +203,7 @@ impl Graph {
 
     /// Number that the mask at a place tests: the mask of every number, and not of NaN. It is below one constant, or above a smaller one.
     #[must_use]
-    pub fn tested_number(&self, place: u32) -> Option<&u32> {
+    pub fn tested_number(&self, place: u32) -> Option<u32> {
         let less = |place: u32| {
             let node = &self.nodes[place as usize];
             (node.kind == Kind::Op(Op::Less)).then_some(&node.args)
@@ -217,7 +217,7 @@ impl Graph {
         ways.into_iter()
             .find_map(|[[below, high, _], [low, above, _]]| {
                 let is_any = self.number(*low)? < self.number(*high)?;
-                (below == above && is_any).then_some(below)
+                (below == above && is_any).then_some(*below)
             })
     }
 

@@ -217,7 +217,9 @@ impl<'a> Body<'a> {
         self.signature(out);
         let (mut last, schedule) = (None, self.function.schedule());
         let operands = schedule.iter().flat_map(|place| self.operands(*place));
-        let read: HashSet<u32> = operands.chain(self.function.results()).copied().collect();
+        let read: HashSet<u32> = operands
+            .chain(self.function.results().iter().copied())
+            .collect();
         for place in schedule.into_iter().filter(|place| read.contains(place)) {
             let now = comment(self.function.graph().origin(place));
             if now.is_some() && now != last {
@@ -295,16 +297,16 @@ impl<'a> Body<'a> {
     }
 
     /// Number that the mask at a place tests, in languages whose drivers ignore NaN in comparisons.
-    fn tested(&self, place: u32) -> Option<&u32> {
+    fn tested(&self, place: u32) -> Option<u32> {
         let tested = self.function.graph().tested_number(place);
         tested.filter(|_| self.language != Language::C)
     }
 
     /// Numbers and masks that the text of a value reads.
-    fn operands(&self, place: u32) -> &[u32] {
+    fn operands(&self, place: u32) -> Vec<u32> {
         match self.tested(place) {
-            Some(tested) => core::slice::from_ref(tested),
-            None => self.function.graph().node(place).operands(),
+            Some(tested) => vec![tested],
+            None => self.function.graph().node(place).operands().to_vec(),
         }
     }
 
@@ -334,7 +336,7 @@ impl<'a> Body<'a> {
         };
         let operands = node.operands();
         let form = if let Some(tested) = self.tested(place) {
-            return format!("{}is_number({})", self.prefix, self.name(*tested));
+            return format!("{}is_number({})", self.prefix, self.name(tested));
         } else if let Some(place) = operands.iter().position(|operand| graph.rounds(*operand)) {
             Form::Rounds(place)
         } else {

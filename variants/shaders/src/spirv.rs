@@ -98,7 +98,7 @@ const CONTROLS: [[u32; 2]; 3] = [[4464, 4459], [4466, 4461], [4467, 4462]];
 /// Asks for IEEE's numbers in every entry point: denormals, NaN, infinity and the sign of 0 are kept, and results round to nearest, those
 /// of divisions as well on drivers that would otherwise approximate them.
 ///
-/// The module then needs `SPV_KHR_float_controls`, and a device with `shaderDenormPreserveFloat32`,
+/// The module then needs `SPV_KHR_float_controls` and, by Vulkan's rules, a device that reports `shaderDenormPreserveFloat32`,
 /// `shaderSignedZeroInfNanPreserveFloat32` and `shaderRoundingModeRTEFloat32`.
 pub fn keep_numbers(words: &mut Vec<u32>) {
     let mut out = words[..HEADER].to_vec();

@@ -118,7 +118,7 @@ fn every_operation_is_right_on_a_driver() {
     let Some(driver) = Driver::new(Host::Vulkan) else {
         return;
     };
-    for target in [Target::Exact, Target::Fused] {
+    for target in driver.kept() {
         let program = every_operation(target);
         let expected = expected(&program, driver.rounding());
         let module = driver.dir.path().join("module.spv");

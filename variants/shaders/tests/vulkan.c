@@ -45,12 +45,18 @@ int main(int argc, char **argv) {
         return 1;
     }
     if (argc == 1) {
-        VkPhysicalDeviceDriverProperties driver = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+        VkPhysicalDeviceFloatControlsProperties controls = {
+            .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FLOAT_CONTROLS_PROPERTIES};
+        VkPhysicalDeviceDriverProperties driver = {
+            .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES, .pNext = &controls};
         VkPhysicalDeviceProperties2 properties = {
             .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
         vkGetPhysicalDeviceProperties2(physical, &properties);
-        printf("%s, %s %s%s\n", properties.properties.deviceName, driver.driverName, driver.driverInfo,
-            properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? ", in software" : "");
+        printf("%s, %s %s%s, reports that it %s denormals, %s NaN, %s to nearest\n", properties.properties.deviceName, driver.driverName, driver.driverInfo,
+            properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? ", in software" : "",
+            controls.shaderDenormPreserveFloat32 ? "keeps" : "may lose",
+            controls.shaderSignedZeroInfNanPreserveFloat32 ? "keeps" : "may lose",
+            controls.shaderRoundingModeRTEFloat32 ? "rounds" : "may not round");
         return 0;
     }
     size_t module_size, input_size;

@@ -9,8 +9,8 @@ use wgpu::{
     RequestAdapterOptions, ShaderModuleDescriptor, ShaderSource,
 };
 
-/// Sum of the samples of each pixel, by `draw` of the module `source`, and whether the adapter is a driver in software. Buffers 0 to 2 are the hairs, the numbers of the material, and
-/// the picture.
+/// Sum of the samples of each pixel, by `draw` of the module `source`, and whether the adapter is a driver in software. Buffers 0 to 2
+/// are the hairs, the numbers of the material, and the picture.
 pub(crate) fn draw(
     source: &str,
     hairs: &[(Vec3, Vec3)],

@@ -97,11 +97,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         file.display()
     );
     // A path parts where rounding moves it past the edge of a hair, and then its pixel differs by one sample of many. A GPU, which
-    // rounds divisions otherwise, parts more paths than lavapipe.
+    // rounds divisions otherwise, parts more paths than lavapipe: 1.4e-4 and 2.7e-2 on an H100.
     let bounds = if is_software {
         [1e-5, 1e-6]
     } else {
-        [1e-3, 0.1]
+        [3e-4, 0.05]
     };
     let is_same = shift < bounds[0] && quantiles[1] < bounds[1];
     if is_same {
