@@ -72,12 +72,12 @@ impl Visitor for Print<'_> {
             let place = place.unwrap_or_else(|| {
                 let place = bodies.len();
                 let (n, s) = (read.len(), slots.kinds.len());
-                let (numbers, has_pdf) = (slots.text(), call == "ValuePdf");
+                let numbers = slots.text();
                 let _ = writeln!(
                     text,
                     "#[derive(Debug)]\npub(crate) enum Body{place} {{}}\nimpl Body{place} {{\n\
                      pub(crate) const S: usize = {s};\npub(crate) const N: usize = {n};\npub(crate) const K: usize = {kept};\n}}\n\
-                     impl Rows<{s}, {n}, {kept}> for Body{place} {{\nconst HAS_PDF: bool = {has_pdf};\n\
+                     impl Rows<{s}, {n}, {kept}> for Body{place} {{\n\
                      const SLOTS: &[Slot; {s}] = &[{numbers}];\n#[inline(always)]\n\
                      fn rows<L: Lanes<Stored = f32x8>>(c: &[f32x8; {s}], packets: &mut [[f32x8; {kept}]], sums: &mut [f32x8; {n}], \
                      finite: &mut f32x8) {{\n{LINTED}\n{{\n{body}}}\n}}\n}}"
