@@ -188,8 +188,7 @@ impl Visitor for Gradients {
 
     fn visit<M: Registered>(self) {
         let mut program = Program::of::<M>(Target::Exact);
-        let cases = [Call::Material, Call::EvalHit].map(|call| Weighted::new::<M>(&program, call));
-        program.keep(cases.each_ref().map(|cases| cases.gradient.clone()).into());
+        let cases = Weighted::both::<M>(&mut program);
         let Some((_dir, binary)) = compiled(&program) else {
             return;
         };
@@ -198,8 +197,7 @@ impl Visitor for Gradients {
             let name = format!("{} {} in C", program.name(), gradient.name());
             let got = run(&binary, gradient.name(), &cases.all.concat());
             cases.check_bits(&got, Rounding::Once, |x| x, &name);
-            let got = got.chunks(gradient.output().len()).map(<[f32]>::to_vec);
-            cases.check(&got.collect::<Vec<_>>(), &name);
+            cases.check(&got, &name);
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::c::{compile, exists, run, source};
 use crate::gradients::Weighted;
 use crate::support::{Case, Tally, case_count, every_model, fusing_level, unsigned};
-use crate::vulkan::check_accuracy;
+use crate::vulkan::Doubles;
 use hairis_shaders::{Call, Function, Program, Rounding, Target};
 use hairis_variants::{Registered, Visitor};
 use std::path::PathBuf;
@@ -104,6 +104,7 @@ impl Visitor for Accuracy {
 
     fn visit<M: Registered>(self) {
         let cases = Case::<M>::many(case_count(4096), 53);
+        let exact = Doubles::new(&cases);
         for target in [Target::Exact, Target::Fused, Target::GpuNative] {
             let mut program = Program::of::<M>(target);
             let calls = [Call::EvalHit, Call::SampleHit].map(|call| program.function(call).clone());
@@ -112,7 +113,7 @@ impl Visitor for Accuracy {
             let name = format!("{} {target:?} in CUDA {:?}", program.name(), self.0);
             let results =
                 |function: &Function, inputs: &[f32]| run(&binary, function.name(), inputs);
-            check_accuracy(&cases, calls.each_ref(), &name, results);
+            exact.check(calls.each_ref(), &name, results);
         }
     }
 }
@@ -139,8 +140,7 @@ impl Visitor for Gradients {
 
     fn visit<M: Registered>(self) {
         let mut program = Program::of::<M>(Target::Exact);
-        let cases = [Call::Material, Call::EvalHit].map(|call| Weighted::new::<M>(&program, call));
-        program.keep(cases.each_ref().map(|cases| cases.gradient.clone()).into());
+        let cases = Weighted::both::<M>(&mut program);
         for flags in [APART, &[]] {
             let (_dir, binary) = compiled(&program, flags);
             for cases in &cases {
@@ -151,8 +151,7 @@ impl Visitor for Gradients {
                     // The sign of a 0 may be that of a NaN.
                     cases.check_bits(&got, Rounding::Once, unsigned, &name);
                 }
-                let got = got.chunks(gradient.output().len()).map(<[f32]>::to_vec);
-                cases.check(&got.collect::<Vec<_>>(), &name);
+                cases.check(&got, &name);
             }
         }
     }

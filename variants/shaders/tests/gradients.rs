@@ -55,6 +55,13 @@ impl Weighted {
         }
     }
 
+    /// Those of a material and of a hit, whose gradients alone the program keeps.
+    pub(crate) fn both<M: Registered>(program: &mut Program) -> [Self; 2] {
+        let cases = [Call::Material, Call::EvalHit].map(|call| Self::new::<M>(program, call));
+        program.keep(cases.each_ref().map(|cases| cases.gradient.clone()).into());
+        cases
+    }
+
     /// Compares gradients with those of the graph, bit by bit after `read`.
     pub(crate) fn check_bits(
         &self,
@@ -80,8 +87,9 @@ impl Weighted {
     }
 
     /// Compares gradients with differences in double precision: 1e-6 in the median, 1e-3 for 99.9%.
-    pub(crate) fn check(&self, gradients: &[Vec<f32>], name: &str) {
+    pub(crate) fn check(&self, gradients: &[f32], name: &str) {
         let (count, results) = (self.function.inputs().len(), self.function.output().len());
+        let gradients = gradients.chunks(self.gradient.output().len());
         assert!(gradients.len() >= self.inputs.len(), "{name}: cases");
         let mut errors = Vec::new();
         for (inputs, got) in self.inputs.iter().zip(gradients) {
@@ -130,7 +138,7 @@ impl Visitor for Differences {
             got
         });
         let name = format!("{} {}", program.name(), cases.gradient.name());
-        cases.check(&gradients.collect::<Vec<_>>(), &name);
+        cases.check(&gradients.collect::<Vec<_>>().concat(), &name);
     }
 }
 

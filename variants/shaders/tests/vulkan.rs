@@ -240,51 +240,65 @@ fn quantiles(got: &[f32], exact: &[f64]) -> [f64; 3] {
     })
 }
 
-/// Compares the results of `EvalHit` with double precision, whose errors are to be less than twice those of one lane, and checks that
-/// those of arguments that are no numbers, also of `SampleHit`, are black. `results` runs one of these two functions.
-pub(crate) fn check_accuracy<M: Registered>(
-    cases: &[Case<M>],
-    [eval, sample]: [&Function; 2],
-    name: &str,
-    results: impl Fn(&Function, &[f32]) -> Vec<f32>,
-) {
-    let inputs =
-        |call| -> Vec<f32> { cases.iter().flat_map(|case| case.arguments(call)).collect() };
-    let evals = results(eval, &inputs(Call::EvalHit));
-    let samples = results(sample, &inputs(Call::SampleHit));
-    let one: Vec<f32> = cases
-        .iter()
-        .flat_map(|case| case.results(Call::EvalHit))
-        .collect();
-    let exact_program = Program::of::<M>(Target::Exact);
-    let exact: Vec<f64> = cases
-        .iter()
-        .flat_map(|case| {
+/// Cases, what `EvalHit` returns for them in double precision, and the errors of one lane.
+pub(crate) struct Doubles<'a, M: Registered> {
+    cases: &'a [Case<M>],
+    results: Vec<f64>,
+    of_one: [f64; 3],
+}
+
+impl<'a, M: Registered> Doubles<'a, M> {
+    pub(crate) fn new(cases: &'a [Case<M>]) -> Self {
+        let program = Program::of::<M>(Target::Exact);
+        let function = program.function(Call::EvalHit);
+        let double = |case: &Case<M>| {
             let arguments = case.arguments(Call::EvalHit);
             let arguments: Vec<f64> = arguments.into_iter().map(f64::from).collect();
-            exact_program
-                .function(Call::EvalHit)
-                .run_double(&arguments)
-                .0
-        })
-        .collect();
-    let (of_one, of_these) = (quantiles(&one, &exact), quantiles(&evals, &exact));
-    println!("{name}: {of_these:?}, one lane {of_one:?}");
-    for (these, one) in of_these.iter().zip(of_one) {
-        assert!(*these < 2.0 * one.max(1e-6), "{name}");
-    }
-    // What is no direction is black.
-    for ((case, eval), sample) in cases.iter().zip(evals.chunks(4)).zip(samples.chunks(11)) {
-        let is_number = |x: &[f32; 3]| x.iter().all(|x| x.is_finite());
-        if !is_number(&case.wo) || !is_number(&case.wi) {
-            assert_eq!(eval, [0.0; 4], "{name}: {case}");
+            function.run_double(&arguments).0
+        };
+        let one = cases.iter().flat_map(|case| case.results(Call::EvalHit));
+        let results: Vec<f64> = cases.iter().flat_map(double).collect();
+        let of_one = quantiles(&one.collect::<Vec<_>>(), &results);
+        Self {
+            cases,
+            results,
+            of_one,
         }
-        if !is_number(&case.wo) || case.xi.iter().any(|x| x.is_nan()) {
-            assert_eq!(
-                sample[3..],
-                [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0],
-                "{name}: {case}"
-            );
+    }
+
+    /// Compares the results of `EvalHit`, whose errors are to be less than twice those of one lane, and checks that those of arguments
+    /// that are no numbers, also of `SampleHit`, are black. `results` runs one of these two functions.
+    pub(crate) fn check(
+        &self,
+        [eval, sample]: [&Function; 2],
+        name: &str,
+        results: impl Fn(&Function, &[f32]) -> Vec<f32>,
+    ) {
+        let inputs = |call| -> Vec<f32> {
+            let arguments = self.cases.iter().flat_map(|case| case.arguments(call));
+            arguments.collect()
+        };
+        let evals = results(eval, &inputs(Call::EvalHit));
+        let samples = results(sample, &inputs(Call::SampleHit));
+        let of_these = quantiles(&evals, &self.results);
+        println!("{name}: {of_these:?}, one lane {:?}", self.of_one);
+        for (these, one) in of_these.iter().zip(self.of_one) {
+            assert!(*these < 2.0 * one.max(1e-6), "{name}");
+        }
+        // What is no direction is black.
+        let results = evals.chunks(4).zip(samples.chunks(11));
+        for (case, (eval, sample)) in self.cases.iter().zip(results) {
+            let is_number = |x: &[f32; 3]| x.iter().all(|x| x.is_finite());
+            if !is_number(&case.wo) || !is_number(&case.wi) {
+                assert_eq!(eval, [0.0; 4], "{name}: {case}");
+            }
+            if !is_number(&case.wo) || case.xi.iter().any(|x| x.is_nan()) {
+                assert_eq!(
+                    sample[3..],
+                    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0],
+                    "{name}: {case}"
+                );
+            }
         }
     }
 }
@@ -300,6 +314,7 @@ impl Visitor for Plain {
             return;
         };
         let cases = Case::<M>::many(case_count(4096), 45);
+        let exact = Doubles::new(&cases);
         for target in [Target::Exact, Target::Gpu, Target::GpuNative] {
             let mut program = Program::of::<M>(target);
             let calls = CALLS.map(|call| program.function(call).clone());
@@ -307,7 +322,7 @@ impl Visitor for Plain {
             let module = driver.plain(&program);
             let name = format!("{} {target:?}", program.name());
             let [eval, sample, _] = &calls;
-            check_accuracy(&cases, [eval, sample], &name, |function, inputs| {
+            exact.check([eval, sample], &name, |function, inputs| {
                 driver.run(&module, function.name(), function, inputs)
             });
         }
@@ -339,9 +354,7 @@ impl Visitor for Gradients {
         let rounding = (self.0 == Host::Vulkan).then(|| driver.rounding());
         for target in [Target::Exact, Target::Fused, Target::Gpu] {
             let mut program = Program::of::<M>(target);
-            let cases =
-                [Call::Material, Call::EvalHit].map(|call| Weighted::new::<M>(&program, call));
-            program.keep(cases.each_ref().map(|cases| cases.gradient.clone()).into());
+            let cases = Weighted::both::<M>(&mut program);
             let run = |module: &Path, cases: &Weighted| {
                 let (gradient, inputs) = (&cases.gradient, cases.all.concat());
                 driver.run(module, gradient.name(), gradient, &inputs)
@@ -358,9 +371,7 @@ impl Visitor for Gradients {
                     let read = |x| unsigned(driver.compared(target, x));
                     cases.check_bits(&run(&kept, cases), rounding, read, &name);
                 }
-                let got = run(&plain, cases);
-                let got = got.chunks(gradient.output().len()).map(<[f32]>::to_vec);
-                cases.check(&got.collect::<Vec<_>>(), &format!("{name} in WGSL"));
+                cases.check(&run(&plain, cases), &format!("{name} in WGSL"));
             }
         }
     }
