@@ -55,7 +55,7 @@ impl Weighted {
         }
     }
 
-    /// Those of a material and of a hit, whose gradients alone the program keeps.
+    /// Cases of a material and of a hit, whose gradients alone the program keeps.
     pub(crate) fn both<M: Registered>(program: &mut Program) -> [Self; 2] {
         let cases = [Call::Material, Call::EvalHit].map(|call| Self::new::<M>(program, call));
         program.keep(cases.each_ref().map(|cases| cases.gradient.clone()).into());
