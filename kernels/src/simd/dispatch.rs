@@ -197,28 +197,40 @@ fn run_avx512<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Avx2>()
 }
 
+// Not inlined, as those above cannot be: each caller, in each unit that the compiler splits a program into, would hold a model.
+#[inline(never)]
+fn run_portable<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<Portable<FUSES>>()
+}
+
 /// The rows of an instruction set.
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 macro_rules! rows {
-    ($($(#[$meta:meta])* $name:ident $method:ident $features:literal $Lanes:ty, $W:literal;)*) => { $(
+    ($($(#[$meta:meta])* $name:ident $method:ident $Lanes:ty, $W:literal;)*) => { $(
         $(#[$meta])*
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        #[target_feature(enable = $features)]
         unsafe fn $name<R: Row<I, N>, const I: usize, const N: usize>(row: R, columns: &Columns<'_, I, N>, at: usize) {
             // SAFETY: the caller's.
             unsafe { columns.$method::<R, $Lanes, $W>(row, at) };
         }
     )* };
 }
+rows! {
+    #[inline(never)]
+    eight_portable packet Portable<FUSES>, 8;
+}
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 rows! {
     /// One packet, what is left of longer ones or all of a short slice. It has no loop, before which the compiler would expand
     /// all constants in memory.
-    eight_avx2 packet "avx2,fma" Avx2, 8;
-    rows_avx2 packets "avx2,fma" Avx2, 8;
-    rows_avx512 packets "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw" Avx512, 16;
-    pairs_avx2 packets "avx2,fma" Pair<Avx2>, 16;
-    pairs_avx512 packets "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw" Pair<Avx512>, 32;
+    #[target_feature(enable = "avx2,fma")]
+    eight_avx2 packet Avx2, 8;
+    #[target_feature(enable = "avx2,fma")]
+    rows_avx2 packets Avx2, 8;
+    #[target_feature(enable = "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw")]
+    rows_avx512 packets Avx512, 16;
+    #[target_feature(enable = "avx2,fma")]
+    pairs_avx2 packets Pair<Avx2>, 16;
+    #[target_feature(enable = "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw")]
+    pairs_avx512 packets Pair<Avx512>, 32;
 }
 
 impl Level {
@@ -240,7 +252,7 @@ impl Level {
             Kind::Avx2 | Kind::Avx512 => wrap(unsafe { run_avx2(kernel) }),
             Kind::Portable => {
                 clean_upper_halves();
-                wrap(kernel.run::<Portable<FUSES>>())
+                wrap(run_portable(kernel))
             }
         }
     }
@@ -303,7 +315,7 @@ impl Level {
         }
         // SAFETY: there are eight rows.
         columns.in_eights(0, |columns, at| unsafe {
-            columns.packet::<R, Portable<FUSES>, 8>(row, at)
+            eight_portable(row, columns, at);
         });
     }
 }
