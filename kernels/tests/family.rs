@@ -3,7 +3,7 @@
 use crate::rows::{MATCHED, PUBLISHED};
 use hairis::{Gaussian, Matched, Published};
 use hairis_conformance::published::{Family, FamilyModel, Rows};
-use hairis_conformance::{conformance, published};
+use hairis_conformance::{AsConserving, conformance, published};
 use hairis_reference::Shape;
 
 /// The published sampler.
@@ -53,10 +53,10 @@ impl<const BANDS: usize, const BY_CHANNEL: bool> FamilyModel for Bands<BANDS, BY
 }
 
 conformance!(hair, Family::<PublishedHair>::new());
-conformance!(matched_5, Family::<Bands<5>>::new(), but hits);
+conformance!(matched_5, AsConserving(Family::<Bands<5>>::new()), but hits);
 conformance!(matched_9, Family::<Bands<9>>::new());
-conformance!(matched_25, Family::<Bands<25>>::new(), but hits);
-conformance!(matched_by_channel, Family::<Bands<9, true>>::new(), but hits);
+conformance!(matched_25, AsConserving(Family::<Bands<25>>::new()), but hits);
+conformance!(matched_by_channel, AsConserving(Family::<Bands<9, true>>::new()), but hits);
 
 published!(published_sampler, crate::family::PublishedHair, published);
 published!(matched, crate::family::Bands<9>, matched);

@@ -5,7 +5,8 @@ use crate::support::Draws;
 use hairis::{Hit, LobeMask, Material};
 use hairis_conformance::proptest::{self, prelude::*};
 use hairis_conformance::{
-    AnyMaterial, Claims, Expected, Materials, Subject, Tolerance, conformance, strategies,
+    AnyMaterial, AsConserving, Claims, Expected, Materials, Subject, Tolerance, conformance,
+    strategies,
 };
 use hairis_reference::{ChiangReference, Reference, Selection};
 use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParams, FarField, OffsetNodes, Shifts};
@@ -238,8 +239,8 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
     }
 }
 
-conformance!(by_mean, ChiangFibers::<false>);
-conformance!(by_channel, ChiangFibers::<true>, but hits);
+conformance!(by_mean, AsConserving(ChiangFibers::<false>));
+conformance!(by_channel, AsConserving(ChiangFibers::<true>), but hits);
 
 /// Directions of the sphere with the solid angle of each, of clear fibre's far field.
 #[test]

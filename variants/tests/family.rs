@@ -3,7 +3,7 @@
 use crate::rows::{MATCHED, PUBLISHED};
 use hairis::{Matched, Published};
 use hairis_conformance::published::{Family, FamilyModel, Rows};
-use hairis_conformance::{conformance, published};
+use hairis_conformance::{AsConserving, conformance, published};
 use hairis_reference::Shape;
 use hairis_variants::Cauchy;
 
@@ -58,8 +58,8 @@ impl FamilyModel for Bands {
     }
 }
 
-conformance!(hair, Family::<PublishedHair>::new(), but hits);
-conformance!(matched_9, Family::<Bands>::new(), but hits);
+conformance!(hair, AsConserving(Family::<PublishedHair>::new()), but hits);
+conformance!(matched_9, AsConserving(Family::<Bands>::new()), but hits);
 
 published!(published_sampler, crate::family::PublishedHair, published);
 published!(matched, crate::family::Bands, matched);

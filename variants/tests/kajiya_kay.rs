@@ -4,7 +4,8 @@ use crate::support::Draws;
 use hairis::{Hit, Lobe, LobeMask};
 use hairis_conformance::proptest::prelude::*;
 use hairis_conformance::{
-    AnyMaterial, Claims, Expected, Materials, Subject, Tolerance, conformance, strategies,
+    AnyMaterial, AsConserving, Claims, Expected, Materials, Subject, Tolerance, conformance,
+    strategies,
 };
 use hairis_reference::{KajiyaKayReference, Reference};
 use hairis_variants::KajiyaKay;
@@ -199,5 +200,5 @@ impl Subject for KajiyaKayFibers {
     }
 }
 
-conformance!(reciprocal, KajiyaKayFibers(Form::Reciprocal));
-conformance!(published, KajiyaKayFibers(Form::Published));
+conformance!(reciprocal, AsConserving(KajiyaKayFibers(Form::Reciprocal)));
+conformance!(published, AsConserving(KajiyaKayFibers(Form::Published)));

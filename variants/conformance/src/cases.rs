@@ -171,7 +171,7 @@ impl<'a> Trial<'a> {
     /// The shading points in the lanes of a packet, in this order.
     pub(crate) fn prepare(&self, level: Level, order: [usize; 8]) -> Box<dyn ErasedBsdf8> {
         let hits = hits8(&order.map(|lane| self.hits[lane]));
-        self.set.prepare_packed(order, level, hits)
+        self.set.prepare_packed(order, level, &hits)
     }
 
     /// Description of a lane.

@@ -177,8 +177,8 @@ pub trait MaterialSet {
     fn len(&self) -> usize;
     fn name(&self, index: usize) -> &'static str;
     fn prepare(&self, index: usize, hit: Hit) -> Box<dyn ErasedBsdf>;
-    fn prepare8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8>;
-    fn prepare_packed(&self, index: [usize; 8], level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8>;
+    fn prepare8(&self, index: usize, level: Level, hits: &Hit8) -> Box<dyn ErasedBsdf8>;
+    fn prepare_packed(&self, index: [usize; 8], level: Level, hits: &Hit8) -> Box<dyn ErasedBsdf8>;
     fn edges(&self, index: usize, hit: &Hit) -> [Vec<f64>; 2];
     fn weight_bound(&self, index: usize, hit: &Hit, lobes: LobeMask) -> Option<f64>;
     fn reference(&self, index: usize, hit: &Hit) -> Option<Expected>;
@@ -211,7 +211,7 @@ impl NamedMaterial<'_> {
     }
 
     pub(crate) fn prepare8(&self, level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8> {
-        self.set.prepare8(self.index, level, hits)
+        self.set.prepare8(self.index, level, &hits)
     }
 
     /// Eight hits on eight materials of one set.
@@ -222,7 +222,7 @@ impl NamedMaterial<'_> {
     ) -> Box<dyn ErasedBsdf8> {
         materials[0]
             .set
-            .prepare_packed(materials.map(|material| material.index), level, hits)
+            .prepare_packed(materials.map(|material| material.index), level, &hits)
     }
 
     pub(crate) fn edges(&self, hit: &Hit) -> [Vec<f64>; 2] {
@@ -286,7 +286,7 @@ impl<'s, S: Subject> Set<'s, S> {
     }
 
     fn with(subject: &'s S, names: Vec<&'static str>, params: Vec<Rc<ParamsOf<S>>>) -> Self {
-        let material = |params: &Rc<_>| Material::new(&subject.model(), params);
+        let material = |params: &Rc<_>| subject.material(params);
         let materials = params.iter().map(material).collect();
         Self {
             subject,
@@ -310,11 +310,11 @@ impl<S: Subject> MaterialSet for Set<'_, S> {
         Box::new(self.materials[index].prepare(hit))
     }
 
-    fn prepare8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8> {
+    fn prepare8(&self, index: usize, level: Level, hits: &Hit8) -> Box<dyn ErasedBsdf8> {
         Box::new(self.materials[index].with_level(level).prepare8(hits))
     }
 
-    fn prepare_packed(&self, index: [usize; 8], level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8> {
+    fn prepare_packed(&self, index: [usize; 8], level: Level, hits: &Hit8) -> Box<dyn ErasedBsdf8> {
         Box::new(
             Material8::pack(index.map(|i| &self.materials[i]))
                 .with_level(level)

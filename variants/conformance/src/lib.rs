@@ -150,7 +150,9 @@ pub use erased::hits::HitsSubject;
 pub use failure::{Failure, Outcome};
 pub use hairis_reference::{LobeAt, Reference, ReferenceSample};
 pub use proptest;
-pub use subject::{AnyMaterial, Claims, Expected, Materials, ParamsOf, Subject, Tolerance};
+pub use subject::{
+    AnyMaterial, AsConserving, Claims, Expected, Materials, ParamsOf, Subject, Tolerance,
+};
 
 /// Declares a module with a `#[test]` for each property of a [`Subject`].
 ///

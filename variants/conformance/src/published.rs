@@ -30,7 +30,7 @@ use core::fmt;
 use hairis::model::{MatchedBell, Model};
 use hairis::{HairParams, Matched, Published};
 use hairis_reference::{HairFormulas, Shape};
-use handles::AnyModel;
+use handles::{AnyModel, Sampler};
 
 /// A model of the family.
 pub trait FamilyModel: Sync {
@@ -75,7 +75,7 @@ pub const fn formulas<S: FamilyModel>() -> HairFormulas {
 pub struct Tested {
     forms: Vec<(Box<dyn AnyModel>, f32)>,
     /// With the published sampler, and with the matched ones of 5, 9 and 25 bands.
-    samplers: [(Option<usize>, Box<dyn AnyModel>); 4],
+    samplers: [(Option<usize>, Box<dyn Sampler>); 4],
     formulas: HairFormulas,
     over_cauchy: f64,
     pdf_floor: f64,
@@ -95,7 +95,7 @@ impl Tested {
         let forms = S::forms()
             .into_iter()
             .map(|(model, factor)| (Box::new(model) as Box<dyn AnyModel>, factor));
-        let samplers: [(_, Box<dyn AnyModel>); 4] = [
+        let samplers: [(_, Box<dyn Sampler>); 4] = [
             (None, Box::new(Published(S::bell()))),
             (Some(5), Box::new(Matched::<_, 5>(S::bell()))),
             (Some(9), Box::new(Matched::<_, 9>(S::bell()))),
@@ -152,7 +152,7 @@ impl Tested {
     }
 
     /// The model with the matched sampler of so many bands, or with the published one.
-    fn sampler(&self, bands: Option<usize>) -> &dyn AnyModel {
+    fn sampler(&self, bands: Option<usize>) -> &dyn Sampler {
         let found = self.samplers.iter().find(|(with, _)| *with == bands);
         &*found.expect("one of the samplers").1
     }

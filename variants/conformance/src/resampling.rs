@@ -296,7 +296,7 @@ pub fn check(subject: &dyn ErasedSubject, factor: f64) -> Outcome {
                 });
             }
             for (level, lane) in Level::available().zip(0..) {
-                let bsdf = set.prepare8(index, level, hits8(&hits));
+                let bsdf = set.prepare8(index, level, &hits8(&hits));
                 cell(hits[lane], &mut draws, &|count, draws| {
                     Sums::of(count, || reservoirs(&*bsdf, light, level, draws)[lane])
                 });
@@ -336,7 +336,7 @@ fn any_rounding_is_finite(subject: &dyn ErasedSubject) -> Outcome {
                     vec![one.pooled(Counts { bsdf: 6, light: 10 }, Partition::All, 4, &mut draws)];
                 all.push(one.path(Partition::Power, &mut draws));
                 for level in Level::available() {
-                    let bsdf = set.prepare8(index, level, hits8(&hits));
+                    let bsdf = set.prepare8(index, level, &hits8(&hits));
                     all.extend(reservoirs(&*bsdf, light, level, &mut draws));
                 }
                 all

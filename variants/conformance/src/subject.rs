@@ -2,7 +2,7 @@
 
 use core::fmt;
 use hairis::model::Model;
-use hairis::{Hit, LobeMask};
+use hairis::{Conserving, Hit, LobeMask, Material};
 use hairis_reference::Reference;
 use proptest::prelude::*;
 
@@ -22,6 +22,11 @@ pub trait Subject: Sync {
 
     /// The model's marker.
     fn model(&self) -> Self::Model;
+
+    /// The material of these parameters.
+    fn material(&self, params: &ParamsOf<Self>) -> Material<Self::Model> {
+        Material::new(&self.model(), params)
+    }
 
     /// Everyday materials: every property is tested on them.
     ///
@@ -76,6 +81,49 @@ pub trait Subject: Sync {
     /// Further materials to compare with the [`reference`](Self::reference), for instance random ones.
     fn random_materials(&self) -> Vec<ParamsOf<Self>> {
         Vec::new()
+    }
+}
+
+/// A subject's materials with the types of [`Conserving`], and without its limit: as handles of models chosen at run time hold
+/// them.
+#[derive(Clone, Copy, Debug)]
+pub struct AsConserving<S>(pub S);
+
+impl<S: Subject> Subject for AsConserving<S> {
+    type Model = Conserving<S::Model>;
+
+    fn model(&self) -> Self::Model {
+        Conserving(self.0.model())
+    }
+    fn material(&self, params: &ParamsOf<Self>) -> Material<Self::Model> {
+        self.0.material(params).into()
+    }
+    fn materials(&self) -> Materials<Self> {
+        self.0.materials()
+    }
+    fn extremes(&self) -> Materials<Self> {
+        self.0.extremes()
+    }
+    fn white(&self) -> Materials<Self> {
+        self.0.white()
+    }
+    fn any_material(&self) -> Option<BoxedStrategy<AnyMaterial<ParamsOf<Self>>>> {
+        self.0.any_material()
+    }
+    fn claims(&self) -> Claims {
+        self.0.claims()
+    }
+    fn edges(&self, params: &ParamsOf<Self>, hit: &Hit) -> [Vec<f64>; 2] {
+        self.0.edges(params, hit)
+    }
+    fn weight_bound(&self, params: &ParamsOf<Self>, hit: &Hit, lobes: LobeMask) -> Option<f64> {
+        self.0.weight_bound(params, hit, lobes)
+    }
+    fn reference(&self, params: &ParamsOf<Self>, hit: &Hit) -> Option<Expected> {
+        self.0.reference(params, hit)
+    }
+    fn random_materials(&self) -> Vec<ParamsOf<Self>> {
+        self.0.random_materials()
     }
 }
 

@@ -1,19 +1,20 @@
 //! Each lobe's density integrates to 1, and so does the mixture: quadrature over the kernels' own numbers.
 
 use super::Tested;
-use super::handles::Material;
 use super::quadrature::{integrate, panels};
 use super::support::{Kind, THETA_O, direction, double, materials, parameters};
 use crate::comparison::LargestError;
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::{HairParams, Lobe};
+use hairis::{HairParams, Lobe, LobeMask};
 use hairis_reference::{MatchedReference, Reference};
 
 /// Integral over the sphere of the density of each lobe alone, of the others but for rounding a product of two.
 fn integrals(tested: &Tested, bands: usize, params: &HairParams, theta_o: f64) -> [f64; 4] {
     let wo = direction(theta_o, 0.4);
     let p = parameters(params, 1.0);
-    let bsdf = Material::new(tested.sampler(Some(bands)), params).prepare(wo);
+    let bsdf = tested
+        .sampler(Some(bands))
+        .prepare(params, wo, LobeMask::ALL);
     let reference = MatchedReference::prepare(&p, tested.formulas.shape, double(wo), bands);
     Lobe::ALL.map(|lobe| {
         let l = lobe.index().min(2);

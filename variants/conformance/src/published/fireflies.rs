@@ -1,12 +1,10 @@
 //! No fireflies: every weight is below its closed-form bound, and that is a small multiple of the mean over all everyday hair.
 
 use super::Tested;
-use super::handles::Material;
 use super::support::{Draws, direction, double, lanes_of, narrow, parameters};
 use crate::comparison::LargestError;
 use core::f64::consts::PI;
 use hairis::params::HairDesc;
-use hairis::simd::Level;
 use hairis::{HairParams, Lobe, LobeMask};
 use hairis_reference::{MatchedReference, Reference};
 
@@ -40,9 +38,7 @@ fn scan(tested: &Tested, bands: usize, worst: &mut [LargestError; 2]) {
         } else {
             LobeMask::ALL
         };
-        let bsdf = Material::new(tested.sampler(Some(bands)), &params)
-            .prepare(wo)
-            .with_lobes(mask);
+        let bsdf = tested.sampler(Some(bands)).prepare(&params, wo, mask);
         let reference = MatchedReference::prepare(
             &parameters(&params, 1.0),
             tested.formulas.shape,
@@ -63,9 +59,7 @@ fn scan(tested: &Tested, bands: usize, worst: &mut [LargestError; 2]) {
             });
         }
         for _ in 0..4 {
-            let eight = bsdf
-                .with_level(Level::detect())
-                .sample8(&lanes_of(&core::array::from_fn(|_| draws.xi3())));
+            let eight = bsdf.sample8(&lanes_of(&core::array::from_fn(|_| draws.xi3())));
             for s in (0..8).filter_map(|lane| eight.lane(lane)) {
                 let weight = s.weight.iter().map(|x| f64::from(*x) / 3.0).sum::<f64>();
                 worst[0].see(weight / limit, || {

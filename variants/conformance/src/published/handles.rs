@@ -2,18 +2,20 @@
 //! per model.
 
 use crate::erased::{ErasedBsdf, ErasedBsdf8};
-use hairis::simd::Level;
-use hairis::{Conserving, HairParams, Hit, Hit8, PerLobe};
+use glam::Vec3;
+use hairis::model::{DynBsdf, LobeEval, LobeEval8, Model};
+use hairis::simd::{Level, f32x8};
+use hairis::{Conserving, HairParams, Hit, Hit8, LobeMask, PerLobe, Sample8, Vec3x8};
 
 /// A model of the family.
 pub(super) trait AnyModel {
     fn prepare(&self, params: &HairParams, hit: Hit) -> Box<dyn ErasedBsdf>;
-    fn prepare8(&self, params: &HairParams, level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8>;
+    fn prepare8(&self, params: &HairParams, level: Level, hits: &Hit8) -> Box<dyn ErasedBsdf8>;
     fn prepare_packed(
         &self,
         params: [&HairParams; 8],
         level: Level,
-        hits: Hit8,
+        hits: &Hit8,
     ) -> Box<dyn ErasedBsdf8>;
     /// The constants of a shading point, by the function for one lane and by that for lanes.
     fn constants(&self, params: &HairParams, hit: Hit) -> [String; 2];
@@ -23,26 +25,30 @@ pub(super) trait AnyModel {
     fn conserving_scale(&self, params: &HairParams) -> f32;
 }
 
-impl<M: hairis::model::Model<Params = HairParams> + 'static> AnyModel for M {
+/// A material with the types of [`Conserving`], and without its limit: packages that list the models have compiled these types.
+fn material<M: Model<Params = HairParams>>(
+    model: &M,
+    params: &HairParams,
+) -> hairis::Material<Conserving<M>> {
+    hairis::Material::new(model, params).into()
+}
+
+impl<M: Model<Params = HairParams> + 'static> AnyModel for M {
     fn prepare(&self, params: &HairParams, hit: Hit) -> Box<dyn ErasedBsdf> {
-        Box::new(hairis::Material::new(self, params).prepare(hit))
+        Box::new(material(self, params).prepare(hit))
     }
 
-    fn prepare8(&self, params: &HairParams, level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8> {
-        Box::new(
-            hairis::Material::new(self, params)
-                .with_level(level)
-                .prepare8(hits),
-        )
+    fn prepare8(&self, params: &HairParams, level: Level, hits: &Hit8) -> Box<dyn ErasedBsdf8> {
+        Box::new(material(self, params).with_level(level).prepare8(hits))
     }
 
     fn prepare_packed(
         &self,
         params: [&HairParams; 8],
         level: Level,
-        hits: Hit8,
+        hits: &Hit8,
     ) -> Box<dyn ErasedBsdf8> {
-        let materials = params.map(|params| hairis::Material::new(self, params));
+        let materials = params.map(|params| material(self, params));
         Box::new(
             hairis::Material8::pack(materials.each_ref())
                 .with_level(level)
@@ -65,11 +71,48 @@ impl<M: hairis::model::Model<Params = HairParams> + 'static> AnyModel for M {
     }
 
     fn max_albedo(&self, params: &HairParams) -> f32 {
-        hairis::Material::new(self, params).max_albedo()
+        material(self, params).max_albedo()
     }
 
     fn conserving_scale(&self, params: &HairParams) -> f32 {
-        hairis::Material::new(self, params).conserving_scale()
+        material(self, params).conserving_scale()
+    }
+}
+
+/// A sampler that is compared with others: the few calls that such tests make.
+pub(super) trait Sampler {
+    fn prepare(&self, params: &HairParams, wo: Vec3, lobes: LobeMask) -> Box<dyn Sampling>;
+}
+
+/// The [`Bsdf`](hairis::Bsdf) of a [`Sampler`].
+pub(super) trait Sampling {
+    fn lobes(&self, wi: Vec3) -> PerLobe<LobeEval>;
+    fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8>;
+    fn albedo(&self) -> PerLobe<[f32; 3]>;
+    fn sample8(&self, xi: &[f32x8; 3]) -> Sample8;
+}
+
+impl<M: Model<Params = HairParams> + 'static> Sampler for M {
+    fn prepare(&self, params: &HairParams, wo: Vec3, lobes: LobeMask) -> Box<dyn Sampling> {
+        Box::new(material(self, params).prepare(wo).with_lobes(lobes))
+    }
+}
+
+impl<M: Model> Sampling for hairis::Bsdf<M> {
+    fn lobes(&self, wi: Vec3) -> PerLobe<LobeEval> {
+        DynBsdf::lobes(self, wi)
+    }
+
+    fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
+        DynBsdf::lobes8(self, wi)
+    }
+
+    fn albedo(&self) -> PerLobe<[f32; 3]> {
+        DynBsdf::albedo(self)
+    }
+
+    fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
+        DynBsdf::sample8(self, xi)
     }
 }
 
@@ -100,7 +143,7 @@ impl<'a> Material<'a> {
     }
 
     pub(super) fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8 {
-        self.model.prepare8(&self.params, self.level, hits.into())
+        self.model.prepare8(&self.params, self.level, &hits.into())
     }
 
     /// Eight hits on eight materials of one model.
@@ -112,7 +155,7 @@ impl<'a> Material<'a> {
         materials[0].model.prepare_packed(
             materials.map(|material| &material.params),
             level,
-            hits.into(),
+            &hits.into(),
         )
     }
 

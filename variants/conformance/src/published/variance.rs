@@ -2,11 +2,12 @@
 //! and densities over the grid of the efficiency figures.
 
 use super::Tested;
-use super::handles::{AnyModel, Bsdf, Material};
+use super::handles::{Sampler, Sampling};
 use super::quadrature::{panels, rule};
 use super::support::{DEG, direction, double, grid_point, narrow, parameters};
+use core::array;
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::{HairParams, Lobe, PerLobe};
+use hairis::{HairParams, Lobe, LobeMask, PerLobe};
 use hairis_reference::{HairFormulas, Reference};
 
 const PHI_O: f64 = 0.4;
@@ -53,26 +54,30 @@ fn peak(params: &HairParams, theta_o: f64, lobe: Lobe) -> [f64; 2] {
     ]
 }
 
-fn line(bsdf: &Bsdf, points: &[(f64, f64)], at: impl Fn(Lobe, f64) -> [f64; 2]) -> Line {
-    let of = |lobe: Lobe, x: f64| {
-        let [theta, phi] = at(lobe, x);
-        let l = bsdf.lobes(direction(theta, PHI_O - phi))[lobe];
-        [
-            f64::from(l.value) * theta.cos().powi(2),
-            f64::from(l.pdf) * theta.cos(),
-        ]
-    };
-    let column =
-        |k: usize| Lobe::ALL.map(|lobe| points.iter().map(|(x, _)| of(lobe, *x)[k]).collect());
-    Line {
+fn line(bsdf: &dyn Sampling, points: &[(f64, f64)], at: impl Fn(Lobe, f64) -> [f64; 2]) -> Line {
+    let mut line = Line {
         weights: points.iter().map(|(_, w)| *w).collect(),
-        value: column(0),
-        density: column(1),
+        value: Default::default(),
+        density: Default::default(),
+    };
+    for (slot, lobe) in Lobe::ALL.into_iter().enumerate() {
+        for eight in points.chunks(8) {
+            // Lanes past the last point repeat the first.
+            let angles: [_; 8] = array::from_fn(|i| at(lobe, eight.get(i).unwrap_or(&eight[0]).0));
+            let wi = angles.map(|[theta, phi]| direction(theta, PHI_O - phi));
+            let found = bsdf.lobes8(&wi.into())[lobe];
+            let (value, pdf) = (found.value.to_array(), found.pdf.to_array());
+            for (i, [theta, _]) in angles.into_iter().enumerate().take(eight.len()) {
+                line.value[slot].push(f64::from(value[i]) * theta.cos().powi(2));
+                line.density[slot].push(f64::from(pdf[i]) * theta.cos());
+            }
+        }
     }
+    line
 }
 
 /// The line in `theta_i`: values absolute, densities to an integral of 1; the density jumps at `jumps`.
-fn inclination(bsdf: &Bsdf, params: &HairParams, theta_o: f64, jumps: &[f64]) -> Line {
+fn inclination(bsdf: &dyn Sampling, params: &HairParams, theta_o: f64, jumps: &[f64]) -> Line {
     let p = parameters(params, 1.0);
     let bell = |l: usize| (2.0 * p.alpha[l] - theta_o, p.beta[l]);
     let pole = FRAC_PI_2 - theta_o;
@@ -91,7 +96,7 @@ fn inclination(bsdf: &Bsdf, params: &HairParams, theta_o: f64, jumps: &[f64]) ->
 }
 
 /// The line in `phi`: values to a peak of 1, densities to an integral of 1.
-fn azimuth(bsdf: &Bsdf, params: &HairParams, theta_o: f64) -> Line {
+fn azimuth(bsdf: &dyn Sampling, params: &HairParams, theta_o: f64) -> Line {
     let p = parameters(params, 1.0);
     let ends = panels(
         0.0,
@@ -127,8 +132,8 @@ fn v(long: &Line, round: &Line, params: &HairParams, shares: PerLobe<f64>) -> f6
     let intensity = [mean(d.i_r), mean(d.i_tt), trt, trt];
     let (mut first, mut second) = (0.0, 0.0);
     for (i, w_i) in long.weights.iter().enumerate() {
-        let f: [f64; 4] = core::array::from_fn(|l| intensity[l] * long.value[l][i]);
-        let p: [f64; 4] = core::array::from_fn(|l| shares.0[l] * long.density[l][i]);
+        let f: [f64; 4] = array::from_fn(|l| intensity[l] * long.value[l][i]);
+        let p: [f64; 4] = array::from_fn(|l| shares.0[l] * long.density[l][i]);
         for (j, w_j) in round.weights.iter().enumerate() {
             let (mut value, mut density) = (0.0, 0.0);
             for l in 0..4 {
@@ -148,7 +153,7 @@ fn jumps(tested: &Tested, bands: usize) -> Vec<f64> {
 }
 
 /// V at every point of the grid.
-fn over_grid(model: &dyn AnyModel, shares: Shares<'_>, jumps: &[f64]) -> Vec<f64> {
+fn over_grid(sampler: &dyn Sampler, shares: Shares<'_>, jumps: &[f64]) -> Vec<f64> {
     let mut all = Vec::new();
     for beta in [2.5, 5.0, 7.5, 10.0, 15.0, 20.0] {
         for degrees in [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0] {
@@ -160,8 +165,8 @@ fn over_grid(model: &dyn AnyModel, shares: Shares<'_>, jumps: &[f64]) -> Vec<f64
                     for phi_g in [20.0, 35.0, 45.0] {
                         for intensity_g in [0.5, 5.0] {
                             let params = grid_point(beta, gamma_tt, gamma_g, phi_g, intensity_g);
-                            let bsdf = Material::new(model, &params).prepare(wo);
-                            let mut line = inclination(&bsdf, &params, theta_o, jumps);
+                            let bsdf = sampler.prepare(&params, wo, LobeMask::ALL);
+                            let mut line = inclination(&*bsdf, &params, theta_o, jumps);
                             // The strength of the glints is in their value; the rest is the same for all of these.
                             if let Some(long) = &long {
                                 line = Line {
@@ -169,7 +174,7 @@ fn over_grid(model: &dyn AnyModel, shares: Shares<'_>, jumps: &[f64]) -> Vec<f64
                                     ..line
                                 };
                             }
-                            let round = azimuth(&bsdf, &params, theta_o);
+                            let round = azimuth(&*bsdf, &params, theta_o);
                             all.push(v(&line, &round, &params, shares(&params, theta_o)));
                             long = Some(line);
                         }
