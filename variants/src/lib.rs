@@ -13,6 +13,11 @@
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
 
+#[cfg(all(test, not(all(feature = "any", feature = "serde"))))]
+compile_error!(
+    "tests of hairis-variants need its features: cargo test -p hairis-variants --features any,serde"
+);
+
 mod cauchy;
 pub mod chiang;
 mod hair;

@@ -13,6 +13,11 @@
 //! assert!(program.function(Call::Eval).operations() < program.function(Call::EvalHit).operations());
 //! ```
 
+#[cfg(all(test, not(feature = "spirv")))]
+compile_error!(
+    "tests of hairis-shaders need its feature: cargo test -p hairis-shaders --features spirv"
+);
+
 mod call;
 mod double;
 mod function;
