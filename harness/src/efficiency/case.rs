@@ -39,6 +39,16 @@ pub(super) struct Draws {
     pub(super) pdf: [f64; 8],
 }
 
+/// Writes its formulas with their constants, from which all else follows.
+#[cfg(test)]
+impl core::fmt::Debug for Case {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let oracles = self.estimators.iter().map(|estimator| &estimator.oracle);
+        write!(f, "{:?} {}", self.model, self.theta_o_deg)?;
+        f.debug_list().entries(oracles).finish()
+    }
+}
+
 impl Case {
     pub(super) fn new(model: ModelKind, params: &HairParams, theta_o_deg: f64) -> Self {
         let wo = fibre_direction(theta_o_deg.to_radians(), PHI_O_DEG.to_radians()).as_vec3();

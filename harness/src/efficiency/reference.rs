@@ -48,7 +48,29 @@ fn second_moment(
 }
 
 /// Mean and variances by the light's own quadrature.
+#[cfg(not(test))]
 pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
+    integrated(case, light)
+}
+
+/// The same, once per case and light: tests run the tables a dozen times, and most of their time would be these integrals.
+#[cfg(test)]
+pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
+    use std::collections::HashMap;
+    use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+    type Known = Mutex<HashMap<String, Arc<OnceLock<Reference>>>>;
+    static KNOWN: OnceLock<Known> = OnceLock::new();
+    let key = format!("{case:?} {light:?}");
+    let mut known = KNOWN
+        .get_or_init(Known::default)
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner);
+    let of_key = Arc::clone(known.entry(key).or_default());
+    drop(known);
+    *of_key.get_or_init(|| integrated(case, light))
+}
+
+fn integrated(case: &Case, light: &dyn Light) -> Reference {
     let (mean, _) = mean_by_quadrature(case, light);
     let v = SAMPLERS.map(|sampler| {
         let mut sphere = case.sphere(sampler).clone();
