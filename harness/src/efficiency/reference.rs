@@ -53,7 +53,7 @@ pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
     integrated(case, light)
 }
 
-/// The same, once per case and light: tests run the tables a dozen times, and most of their time would be these integrals.
+/// Integrates each case under each light once: tests run the tables a dozen times, and most of their time would be these integrals.
 #[cfg(test)]
 pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
     use std::collections::HashMap;
