@@ -26,7 +26,7 @@ fi
 HAIRIS_MATERIALS=10000 cargo test -q --locked --release -p hairis --all-features --test main conserves_energy -- --nocapture || failed=1
 cargo test -q --locked -p hairis-harness --lib -- --ignored || failed=1
 cargo test -q --locked --release -p hairis-render --test main -- --ignored || failed=1
-cargo test -q --locked -p hairis-harness -p hairis-render -p hairis-variants -p hairis-gradients --features hairis-variants/any,hairis-variants/serde,hairis-variants/every-sampler \
+cargo test -q --locked -p hairis-harness -p hairis-render -p hairis-variants -p hairis-gradients --features hairis-variants/every-sampler \
   || failed=1
 # The C library as it is by default: at most 2.5 MB, the answers of Rust, and the other models refused by name.
 library() {

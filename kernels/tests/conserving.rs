@@ -2,14 +2,12 @@
 
 use core::f64::consts::FRAC_PI_2;
 use glam::Vec3;
-use hairis::columns::{EvalColumns, HitColumns, MaterialTable, SampleColumns};
 use hairis::model::Model;
 use hairis::params::HairDesc;
 use hairis::simd::{Level, f32x8};
-use hairis::{
-    Conserving, Gaussian, HairParams, Matched, Material, Material8, PerLobe, Published, Vec3x8,
-};
+use hairis::{Conserving, Gaussian, HairParams, Matched, Material, PerLobe, Published, Vec3x8};
 use hairis_conformance::published::support::{DEG, Draws, direction, narrow};
+use hairis_conformance::{Materials, Subject, hits, lanes};
 use hairis_variants::Cauchy;
 
 /// Materials of each kind: 10,000 in `.ci/long.sh`.
@@ -156,19 +154,15 @@ fn any_legal_hair_conserves_energy() {
     conserves("legal, Cauchy", Cauchy::PAPER.model(), legal, 0.8);
 }
 
-/// Everyday hair, which has a fit, and hair of narrow bright lobes, which has none.
-fn both<M: Model<Params = HairParams>>(model: M) -> [Material<Conserving<M>>; 2] {
+/// Hair of narrow bright lobes, for which no fit is accurate enough.
+fn narrow_bright() -> HairParams {
     let narrow = HairDesc {
         beta: [2e-4, 0.03, 1e-3],
         i_r: [900.0, 500.0, 200.0],
         i_trt: [300.0; 3],
         ..*HairParams::blond().desc()
     };
-    let params = [HairParams::blond(), HairParams::new(&narrow).unwrap()];
-    let materials = params.map(|params| Material::new(&Conserving(model), &params));
-    let integrate = materials.each_ref().map(|material| material.integrates());
-    assert_eq!(integrate, [false, true], "a fit, and none");
-    materials
+    HairParams::new(&narrow).unwrap()
 }
 
 /// Columns of hits, directions and uniform numbers.
@@ -189,84 +183,43 @@ pub(crate) fn slices(columns: &[Vec<f32>; 3]) -> [&[f32]; 3] {
     columns.each_ref().map(Vec::as_slice)
 }
 
-/// The numbers of every call of slices and of packets at hits on materials with a fit and without are the bits of one hit alone.
-fn calls_agree<M: Model<Params = HairParams, Prepared<f32>: PartialEq>>(model: M) {
-    const LEN: usize = 45;
-    let [wo, wi, xi] = columns(LEN);
-    let at = |columns: &[Vec<f32>; 3], i: usize| {
-        Vec3x8::from([Vec3::new(columns[0][i], columns[1][i], columns[2][i]); 8])
-    };
-    let index: Vec<u32> = (0..LEN).map(|i| u32::from(i < 9 || i % 3 == 0)).collect();
-    for level in Level::available() {
-        let materials = both(model).map(|material| material.with_level(level));
-        let table = MaterialTable {
-            materials: &materials,
-            index: &index,
-        };
-        let hits = HitColumns {
-            wo: slices(&wo),
-            h: None,
-        };
-        let mut value = [(); 3].map(|()| vec![0.0; LEN]);
-        let (mut pdf, mut sampled) = (vec![0.0; LEN], vec![0.0; LEN]);
-        let mut eval = |material: Option<usize>| {
-            let out = EvalColumns {
-                value: Some(value.each_mut().map(Vec::as_mut_slice)),
-                pdf: Some(&mut pdf),
-            };
-            let samples = SampleColumns {
-                pdf: Some(&mut sampled),
-                ..SampleColumns::default()
-            };
-            if let Some(material) = material {
-                materials[material]
-                    .eval_hits(hits, slices(&wi), out)
-                    .unwrap();
-                materials[material]
-                    .sample_hits(hits, slices(&xi), samples)
-                    .unwrap();
-            } else {
-                table.eval_hits(hits, slices(&wi), out).unwrap();
-                table.sample_hits(hits, slices(&xi), samples).unwrap();
-            }
-            for i in 0..LEN {
-                let material = &materials[material.unwrap_or(index[i] as usize)];
-                let bsdf = material.prepare8(&at(&wo, i));
-                let eight = bsdf.eval_pdf8(&at(&wi, i));
-                let sample = bsdf.sample8(&[0, 1, 2].map(|c| f32x8::splat(xi[c][i])));
-                let got = [value[0][i], value[1][i], value[2][i], pdf[i], sampled[i]];
-                let eval = eight.lane(0);
-                let [r, g, b] = eval.value;
-                let want = [r, g, b, eval.pdf, sample.pdf.as_array()[0]];
-                assert_eq!(
-                    got.map(f32::to_bits),
-                    want.map(f32::to_bits),
-                    "{level}: hit {i} of material {material:?}"
-                );
-            }
-        };
-        eval(Some(0));
-        eval(Some(1));
-        eval(None);
+/// Hair with a fit, and hair without.
+struct Fits<M>(M);
 
-        // A lane of a packet does not depend on what the others are made of.
-        let mixed = Material8::pack([0, 1, 0, 0, 1, 1, 0, 1].map(|i: usize| &materials[i]));
-        for i in 0..LEN {
-            let packet = mixed.prepare8(&at(&wo, i));
-            for (lane, material) in [0, 1, 0, 0, 1, 1, 0, 1].into_iter().enumerate() {
-                let alone = materials[material].prepare8(&at(&wo, i)).lane(3);
-                assert!(
-                    packet.lane(lane) == alone,
-                    "{level}: lane {lane} of hit {i}: {:?} for {alone:?}",
-                    packet.lane(lane)
-                );
-            }
-        }
+impl<M: Model<Params = HairParams> + Sync + 'static> Subject for Fits<M> {
+    type Model = Conserving<M>;
+
+    fn model(&self) -> Self::Model {
+        Conserving(self.0)
+    }
+
+    fn materials(&self) -> Materials<Self> {
+        vec![
+            ("with a fit", HairParams::blond()),
+            ("without", narrow_bright()),
+        ]
+    }
+}
+
+/// Calls of slices and of packets, on materials with a fit and without, give the same bits.
+fn calls_agree<M: Model<Params = HairParams> + Sync + 'static>(model: M) {
+    let subject = Fits(model);
+    let materials = subject.materials().into_iter();
+    let integrate: Vec<_> = materials
+        .map(|(_, params)| subject.material(&params).integrates())
+        .collect();
+    assert_eq!(integrate, [false, true], "a fit, and none");
+    for property in [
+        hits::hits_equal_packets(&subject),
+        lanes::levels_agree(&subject),
+        lanes::lanes_permute(&subject),
+    ] {
+        property.unwrap();
     }
 }
 
 #[test]
-fn packed_hair_and_slices_have_the_bits_of_one_hit() {
+fn packets_and_slices_of_conserving_hair_agree() {
     calls_agree(Published(Gaussian));
     calls_agree(Matched::new(Gaussian));
     calls_agree(Published(Cauchy::PAPER));
@@ -277,7 +230,8 @@ fn packed_hair_and_slices_have_the_bits_of_one_hit() {
 fn one_hit_has_the_bits_of_eight_that_round_alike() {
     let [wo, wi, _] = columns(200);
     for level in Level::available().filter(|level| !level.fuses()) {
-        for material in both(Published(Gaussian)) {
+        for params in [HairParams::blond(), narrow_bright()] {
+            let material = Material::new(&Conserving(Published(Gaussian)), &params);
             for i in 0..200 {
                 let at = |columns: &[Vec<f32>; 3]| {
                     Vec3::new(columns[0][i], columns[1][i], columns[2][i])

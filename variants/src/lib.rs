@@ -15,7 +15,7 @@
 
 #[cfg(all(test, not(all(feature = "any", feature = "serde"))))]
 compile_error!(
-    "tests of hairis-variants need its features: cargo test -p hairis-variants --features any,serde"
+    "tests of hairis-variants need the features `any` and `serde`: run cargo test -p hairis-variants --features any,serde"
 );
 
 mod cauchy;

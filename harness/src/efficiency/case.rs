@@ -39,7 +39,7 @@ pub(super) struct Draws {
     pub(super) pdf: [f64; 8],
 }
 
-/// Writes its formulas with their constants, from which all else follows.
+/// Prints the constants of all formulas, which determine every integral of the case.
 #[cfg(test)]
 impl core::fmt::Debug for Case {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {

@@ -53,14 +53,15 @@ pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
     integrated(case, light)
 }
 
-/// Integrates each case under each light once: tests run the tables a dozen times, and most of their time would be these integrals.
+/// Integrates each case under each light once: tests run the tables a dozen times, and these integrals would take most of their time.
 #[cfg(test)]
 pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
     use std::collections::HashMap;
     use std::sync::{Arc, Mutex, OnceLock, PoisonError};
     type Known = Mutex<HashMap<String, Arc<OnceLock<Reference>>>>;
     static KNOWN: OnceLock<Known> = OnceLock::new();
-    let key = format!("{case:?} {light:?}");
+    // Whether results depend on the number of threads is a question of a test.
+    let key = format!("{} {case:?} {light:?}", rayon::current_num_threads());
     let mut known = KNOWN
         .get_or_init(Known::default)
         .lock()

@@ -197,7 +197,7 @@ fn run_avx512<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Avx2>()
 }
 
-// Not inlined, as those above cannot be: each caller, in each unit that the compiler splits a program into, would hold a model.
+// Never inlined, as those above cannot be into plain callers: each caller would hold a copy of the model in every codegen unit.
 #[inline(never)]
 fn run_portable<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Portable<FUSES>>()

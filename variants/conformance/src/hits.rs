@@ -23,10 +23,11 @@ const SAMPLE_CHOICES: [[bool; 5]; 4] = [
     [false; 5],
 ];
 
-/// Slices of hits give the bits that [`Material8::prepare8`](hairis::Material8::prepare8) and then eight lanes give: on one material,
-/// and on a table of materials in runs and at random; without `h`, they are hits on the axis. Columns that are left out are not written, nor is
-/// anything beyond a slice. Slices of different lengths and indices beyond the table are refused, and then nothing is written.
-/// Where the host rounds down and takes denormals for 0, results are finite and not negative.
+/// Slices of hits give the bits that [`Material8::prepare8`](hairis::Material8::prepare8) and then eight lanes give: evaluated,
+/// sampled, or both in one call, on one material and on a table of materials in runs and at random. Without `h`, they are hits on
+/// the axis. Columns that are left out are not written, nor is anything beyond a slice. Slices of different lengths and indices
+/// beyond the table are refused, and then nothing is written. Where the host rounds down and takes denormals for 0, results are
+/// finite and not negative.
 ///
 /// # Errors
 ///
@@ -66,19 +67,27 @@ fn any_rounding_is_finite(set: &dyn HitsSet) -> Outcome {
     let index = indices(&mut draws, LONGEST, set.len());
     let slices = Slices::new(&rows, 0, true);
     for level in Level::available() {
-        let mut all = [const { [0.0; LONGEST] }; 8];
-        let [r, g, b, pdf, wr, wg, wb, density] = all.each_mut().map(|column| &mut column[..]);
-        let evals = EvalColumns {
-            value: Some([r, g, b]),
-            pdf: Some(pdf),
-        };
-        let samples = SampleColumns {
-            weight: Some([wr, wg, wb]),
-            pdf: Some(density),
-            ..SampleColumns::default()
-        };
+        let mut all = [const { [0.0; LONGEST] }; 16];
+        let (alone, both) = all.split_at_mut(8);
+        let [alone, both] = [alone, both].map(|columns| {
+            let [r, g, b, pdf, wr, wg, wb, density] = columns else {
+                unreachable!("half of the columns")
+            };
+            let evals = EvalColumns {
+                value: Some([r, g, b]),
+                pdf: Some(pdf),
+            };
+            let samples = SampleColumns {
+                weight: Some([wr, wg, wb]),
+                pdf: Some(density),
+                ..SampleColumns::default()
+            };
+            (evals, samples)
+        });
         let call = |out| set.call(HitMaterials::PerHit(&index), level, slices.call(out));
-        let lengths = call(Columns::Eval(evals)).and(call(Columns::Sample(samples)));
+        let lengths = call(Columns::Eval(alone.0))
+            .and(call(Columns::Sample(alone.1)))
+            .and(call(Columns::Both(both.0, both.1)));
         if lengths.is_err() || !all.iter().flatten().all(|x| x.is_finite() && *x >= 0.0) {
             return Err(Failure::new(
                 NAME,
@@ -159,18 +168,14 @@ impl Slices {
         [0, 1, 2].map(|n| &self.columns[from + n][self.offset..])
     }
 
-    /// The arguments of a call for these results: directions to evaluate, or numbers to sample with.
+    /// The arguments of a call for these results.
     fn call<'a>(&'a self, out: Columns<'a>) -> HitsCall<'a> {
         let hits = HitColumns {
             wo: self.three(0),
             h: self.has_h.then(|| &self.columns[3][self.offset..]),
         };
-        let inputs = self.three(if matches!(out, Columns::Eval(_)) {
-            4
-        } else {
-            7
-        });
-        HitsCall { hits, inputs, out }
+        let (wi, xi) = (self.three(4), self.three(7));
+        HitsCall { hits, wi, xi, out }
     }
 
     fn check(
@@ -181,37 +186,58 @@ impl Slices {
         call: impl Fn(Columns<'_>) -> Result<(), HitsError>,
     ) -> Outcome {
         let refused = |e: HitsError| Failure::new(NAME, format!("{e}: {at}"));
-        for [value, pdf] in EVAL_CHOICES {
-            let mut room = Room::<4>::new(self.offset, len);
-            let [r, g, b, density] = room.slices();
-            let out = EvalColumns {
-                value: value.then_some([r, g, b]),
-                pdf: pdf.then_some(density),
+        // Alone, and each choice of the one together with a choice of the other.
+        let alone = EVAL_CHOICES.map(|evals| (Some(evals), None));
+        let samples = SAMPLE_CHOICES.map(|samples| (None, Some(samples)));
+        let evals = EVAL_CHOICES.into_iter().chain([[false; 2]]);
+        let both = evals.zip(SAMPLE_CHOICES.into_iter().cycle().skip(2));
+        let both = both.map(|(evals, samples)| (Some(evals), Some(samples)));
+        for (evals, samples) in alone.into_iter().chain(samples).chain(both) {
+            let mut eval_room = Room::<4>::new(self.offset, len);
+            let mut sample_room = Room::<COLUMNS>::new(self.offset, len);
+            let out = match (evals, samples) {
+                (Some(choice), None) => Columns::Eval(evaluated(&mut eval_room, choice)),
+                (None, Some(choice)) => Columns::Sample(sampled(&mut sample_room, choice)),
+                (evals, samples) => Columns::Both(
+                    evaluated(&mut eval_room, evals.unwrap_or_default()),
+                    sampled(&mut sample_room, samples.unwrap_or_default()),
+                ),
             };
-            call(Columns::Eval(out)).map_err(refused)?;
-            room.check(
-                &chosen(&expected.evals, [value, value, value, pdf]),
-                "value and density",
-                at,
-            )?;
-        }
-        for [wi, value, pdf, weight, slot] in SAMPLE_CHOICES {
-            let mut room = Room::<COLUMNS>::new(self.offset, len);
-            let [u, v, w, r, g, b, density, wr, wg, wb, lobe] = room.slices();
-            let out = SampleColumns {
-                wi: wi.then_some([u, v, w]),
-                value: value.then_some([r, g, b]),
-                pdf: pdf.then_some(density),
-                weight: weight.then_some([wr, wg, wb]),
-                slot: slot.then_some(lobe),
-            };
-            call(Columns::Sample(out)).map_err(refused)?;
+            call(out).map_err(refused)?;
+            let [value, pdf] = evals.unwrap_or_default();
+            let asked = [value, value, value, pdf];
+            eval_room.check(&chosen(&expected.evals, asked), "value and density", at)?;
+            let [wi, value, pdf, weight, slot] = samples.unwrap_or_default();
             let asked = [
                 wi, wi, wi, value, value, value, pdf, weight, weight, weight, slot,
             ];
-            room.check(&chosen(&expected.samples, asked), "samples", at)?;
+            sample_room.check(&chosen(&expected.samples, asked), "samples", at)?;
         }
         Ok(())
+    }
+}
+
+/// Room for the columns of an evaluation that are asked for.
+fn evaluated(room: &mut Room<4>, [value, pdf]: [bool; 2]) -> EvalColumns<'_> {
+    let [r, g, b, density] = room.slices();
+    EvalColumns {
+        value: value.then_some([r, g, b]),
+        pdf: pdf.then_some(density),
+    }
+}
+
+/// Room for the columns of samples that are asked for.
+fn sampled(
+    room: &mut Room<COLUMNS>,
+    [wi, value, pdf, weight, slot]: [bool; 5],
+) -> SampleColumns<'_> {
+    let [u, v, w, r, g, b, density, wr, wg, wb, lobe] = room.slices();
+    SampleColumns {
+        wi: wi.then_some([u, v, w]),
+        value: value.then_some([r, g, b]),
+        pdf: pdf.then_some(density),
+        weight: weight.then_some([wr, wg, wb]),
+        slot: slot.then_some(lobe),
     }
 }
 

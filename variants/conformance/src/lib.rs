@@ -45,7 +45,7 @@
 //! | `levels_agree` | levels that fuse alike, packed and shared materials, give the same bits |
 //! | `lobes_and_albedo_equal_scalar` | the same of lobes and albedo; `h` matters only where it is claimed to |
 //! | `slices_equal_packets` | slices of every length and alignment give the bits of packets |
-//! | `hits_equal_packets` | slices of hits give them too, on one material and on tables, with columns left out |
+//! | `hits_equal_packets` | slices of hits give them too: evaluated, sampled or both at once, on one material and on tables, with columns left out |
 //! | `resampling_is_unbiased` | resampled light against plain estimates, under five lights, partly hidden |
 //! | `lobes_sum_to_value` | values and densities of lobes alone and together |
 //! | `masks_select_lobes` | masked lobes neither scatter nor are sampled |

@@ -84,8 +84,9 @@ pub trait Subject: Sync {
     }
 }
 
-/// A subject's materials with the types of [`Conserving`], and without its limit: as handles of models chosen at run time hold
-/// them.
+/// Subject whose materials have the types of [`Conserving`] without its limit, as handles of models chosen at run time have.
+///
+/// A package that lists models has compiled these types already. A test of the list compares them with the models' own types.
 #[derive(Clone, Copy, Debug)]
 pub struct AsConserving<S>(pub S);
 

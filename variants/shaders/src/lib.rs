@@ -15,7 +15,7 @@
 
 #[cfg(all(test, not(feature = "spirv")))]
 compile_error!(
-    "tests of hairis-shaders need its feature: cargo test -p hairis-shaders --features spirv"
+    "tests of hairis-shaders need the feature `spirv`: run cargo test -p hairis-shaders --features spirv"
 );
 
 mod call;

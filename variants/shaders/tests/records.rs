@@ -49,7 +49,7 @@ fn operations_are_those_recorded() {
     for (now, recorded) in text.lines().zip(recorded.lines()) {
         assert_eq!(
             now, recorded,
-            "write the record: HAIRIS_RECORD=write cargo test -p hairis-shaders operations"
+            "write the record: HAIRIS_RECORD=write cargo test -p hairis-shaders --features spirv operations"
         );
     }
     assert_eq!(text.lines().count(), recorded.lines().count());

@@ -13,6 +13,8 @@ pub(crate) enum Columns<'a> {
     Eval(EvalColumns<'a>),
     /// Columns of a sample.
     Sample(SampleColumns<'a>),
+    /// Both in one call.
+    Both(EvalColumns<'a>, SampleColumns<'a>),
 }
 
 /// A [`Subject`] whose slices of hits are tested: pass a reference to any subject.
@@ -35,8 +37,10 @@ impl<S: Subject> HitsSubject for S {
 #[derive(Debug)]
 pub struct HitsCall<'a> {
     pub(crate) hits: HitColumns<'a>,
-    /// Directions towards the light, or uniform numbers.
-    pub(crate) inputs: [&'a [f32]; 3],
+    /// Directions towards the light.
+    pub(crate) wi: [&'a [f32]; 3],
+    /// Uniform numbers.
+    pub(crate) xi: [&'a [f32]; 3],
     pub(crate) out: Columns<'a>,
 }
 
@@ -67,16 +71,18 @@ pub enum HitMaterials<'a> {
 
 impl<S: Subject> HitsSet for Set<'_, S> {
     fn call(&self, of: HitMaterials<'_>, level: Level, call: HitsCall<'_>) -> HitsResult {
-        let HitsCall { hits, inputs, out } = call;
+        let HitsCall { hits, wi, xi, out } = call;
         match of {
-            HitMaterials::Shared(index) => Ok(match out {
-                Columns::Eval(out) => self.materials[index]
-                    .with_level(level)
-                    .eval_hits(hits, inputs, out),
-                Columns::Sample(out) => self.materials[index]
-                    .with_level(level)
-                    .sample_hits(hits, inputs, out),
-            }?),
+            HitMaterials::Shared(index) => {
+                let material = self.materials[index].with_level(level);
+                Ok(match out {
+                    Columns::Eval(out) => material.eval_hits(hits, wi, out),
+                    Columns::Sample(out) => material.sample_hits(hits, xi, out),
+                    Columns::Both(evals, samples) => {
+                        material.eval_sample_hits(hits, wi, evals, xi, samples)
+                    }
+                }?)
+            }
             HitMaterials::PerHit(index) => {
                 let on_level = |material: &Material<S::Model>| material.with_level(level);
                 let materials: Vec<_> = self.materials.iter().map(on_level).collect();
@@ -85,8 +91,11 @@ impl<S: Subject> HitsSet for Set<'_, S> {
                     index,
                 };
                 match out {
-                    Columns::Eval(out) => table.eval_hits(hits, inputs, out),
-                    Columns::Sample(out) => table.sample_hits(hits, inputs, out),
+                    Columns::Eval(out) => table.eval_hits(hits, wi, out),
+                    Columns::Sample(out) => table.sample_hits(hits, xi, out),
+                    Columns::Both(evals, samples) => {
+                        table.eval_sample_hits(hits, wi, evals, xi, samples)
+                    }
                 }
             }
         }

@@ -25,7 +25,8 @@ pub(super) trait AnyModel {
     fn conserving_scale(&self, params: &HairParams) -> f32;
 }
 
-/// A material with the types of [`Conserving`], and without its limit: packages that list the models have compiled these types.
+/// Makes a material with the types of [`Conserving`], but without its limit. Packages that list the models have compiled these types
+/// already.
 fn material<M: Model<Params = HairParams>>(
     model: &M,
     params: &HairParams,
@@ -79,12 +80,12 @@ impl<M: Model<Params = HairParams> + 'static> AnyModel for M {
     }
 }
 
-/// A sampler that is compared with others: the few calls that such tests make.
+/// Sampler under comparison, with the few calls that such tests make.
 pub(super) trait Sampler {
     fn prepare(&self, params: &HairParams, wo: Vec3, lobes: LobeMask) -> Box<dyn Sampling>;
 }
 
-/// The [`Bsdf`](hairis::Bsdf) of a [`Sampler`].
+/// Shading point of a [`Sampler`].
 pub(super) trait Sampling {
     fn lobes(&self, wi: Vec3) -> PerLobe<LobeEval>;
     fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8>;
