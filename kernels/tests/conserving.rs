@@ -218,10 +218,19 @@ fn calls_agree<M: Model<Params = HairParams> + Sync + 'static>(model: M) {
     }
 }
 
+// Tests of their own, which run side by side: each integrates tens of thousands of hits.
 #[test]
 fn packets_and_slices_of_conserving_hair_agree() {
     calls_agree(Published(Gaussian));
+}
+
+#[test]
+fn packets_and_slices_of_conserving_matched_hair_agree() {
     calls_agree(Matched::new(Gaussian));
+}
+
+#[test]
+fn packets_and_slices_of_conserving_cauchy_hair_agree() {
     calls_agree(Published(Cauchy::PAPER));
 }
 
