@@ -30,7 +30,7 @@ HAIRIS_PLAYWRIGHT=$tools/page
 mkdir -p "$tools"
 HAIRIS_CHROMIUM=$(bash -ec '. .ci/unpack; browser; node --version; "$chromium" --version; echo "$chromium"' | tail -n 1) ||
   { unset HAIRIS_CHROMIUM; echo "node, npm or Chromium is missing: tests on WebGPU are skipped"; }
-# The build of the test command: another would take longer than the tests.
+# In the profile of the test command, whose packages have more features: these compile in about a minute.
 cargo test -q --locked -p hairis-shaders --features spirv --test main -- --ignored --nocapture
 # The bounds of the example are those of the driver in software. Mesa asks for XDG_RUNTIME_DIR.
 if [ -n "${VK_DRIVER_FILES:-}" ]; then

@@ -67,12 +67,10 @@ fn any_rounding_is_finite(set: &dyn HitsSet) -> Outcome {
     let index = indices(&mut draws, LONGEST, set.len());
     let slices = Slices::new(&rows, 0, true);
     for level in Level::available() {
-        let mut all = [const { [0.0; LONGEST] }; 16];
-        let (alone, both) = all.split_at_mut(8);
-        let [alone, both] = [alone, both].map(|columns| {
-            let [r, g, b, pdf, wr, wg, wb, density] = columns else {
-                unreachable!("half of the columns")
-            };
+        let mut all = [[[0.0; LONGEST]; 8]; 2];
+        let [alone, both] = all.each_mut().map(|columns| {
+            let [r, g, b, pdf, wr, wg, wb, density] =
+                columns.each_mut().map(|column| &mut column[..]);
             let evals = EvalColumns {
                 value: Some([r, g, b]),
                 pdf: Some(pdf),
@@ -88,7 +86,13 @@ fn any_rounding_is_finite(set: &dyn HitsSet) -> Outcome {
         let lengths = call(Columns::Eval(alone.0))
             .and(call(Columns::Sample(alone.1)))
             .and(call(Columns::Both(both.0, both.1)));
-        if lengths.is_err() || !all.iter().flatten().all(|x| x.is_finite() && *x >= 0.0) {
+        if lengths.is_err()
+            || !all
+                .iter()
+                .flatten()
+                .flatten()
+                .all(|x| x.is_finite() && *x >= 0.0)
+        {
             return Err(Failure::new(
                 NAME,
                 format!("rounded down on {level}: {all:?}"),
