@@ -133,7 +133,7 @@ impl<B: Bell> Model for Published<B> {
 
     #[inline(always)]
     fn unfit<L: Lanes, C: Broadcast<L>>(fit: &AlbedoFit<C>) -> L {
-        fit.refused.lanes()
+        fit.warp.refused.lanes()
     }
 
     #[inline(always)]

@@ -58,6 +58,7 @@ pub(crate) mod pair;
 pub(crate) mod portable;
 mod scalar;
 pub(crate) mod schedule;
+pub(crate) mod table;
 #[cfg(feature = "trace")]
 pub mod trace;
 

@@ -8,25 +8,37 @@ mod fit;
 use super::albedo::channels;
 use super::view::{HairLobes, HairView};
 use crate::model::Bell;
-use crate::simd::{Broadcast, Choice, Lanes, lanes3, store3};
+use crate::simd::table::{ENTRIES, NUMBERS, Table};
+use crate::simd::{Broadcast, Choice, Lanes, Scalar, f32x8, lanes3, store3};
 
 /// Pieces on each side of the normal plane: the look-up has an entry for each of both sides.
-const PIECES: usize = 4;
-/// Coefficients of a piece.
-const POWERS: usize = 5;
+const PIECES: usize = ENTRIES / 2;
+/// Coefficients of a piece in each channel.
+const POWERS: usize = NUMBERS / 3;
+
+/// `1 / albedo - 1` of each channel as a function of the inclination of `wo`: on each side of the normal plane, the lower one
+/// first, four polynomials of degree 4 in a warped inclination.
+///
+/// With `x = sqrt(cos / (1 + |sin|))` of the inclination the pieces have equal lengths in `v = (1 + near) x / (x + near)`.
+/// Next to a pole the albedo is `A + B log x` of smooth `A` and `B`, the latter of order `x^2`: the root makes the logarithm
+/// harmless, and `near` is the scale of narrow lobes. Where the albedo is below 1 the polynomials go on smoothly above 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AlbedoFit<C: Scalar> {
+    pub(in crate::hair) warp: Warp<C>,
+    /// Coefficients of each piece: of the three channels, from the highest power down.
+    pieces: Table<C>,
+}
 
 crate::simd::lane_struct! {
-    /// `1 / albedo - 1` of each channel as a function of the inclination of `wo`: on each side of the normal plane, the lower one
-    /// first, four polynomials of degree 4 in a warped inclination. Where the albedo is below 1 they go on smoothly above 0.
-    ///
-    /// With `x = sqrt(cos / (1 + |sin|))` of the inclination the pieces have equal lengths in `v = (1 + near) x / (x + near)`.
-    /// Next to a pole the albedo is `A + B log x` of smooth `A` and `B`, the latter of order `x^2`: the root makes the logarithm
-    /// harmless, and `near` is the scale of narrow lobes.
-    pub struct AlbedoFit {
-        /// Scale of the warp.
+    @impl {C: Scalar} C, AlbedoFit {C} {f32} {f32x8}
+    warp: Warp<C>, pieces: Table<C>
+}
+
+crate::simd::lane_struct! {
+    /// Constants of a fit besides its polynomials.
+    pub(in crate::hair) struct Warp {
+        /// Scale of the warp on either side.
         pub(in crate::hair) near: [C; 2],
-        /// Coefficients, from the constant up, of each channel in each piece.
-        pub(in crate::hair) coefficients: [[[C; 2 * PIECES]; 3]; POWERS],
         /// 1 where the polynomials are not accurate enough and all 0, which changes nothing, else 0.
         pub(in crate::hair) refused: C,
     }
@@ -42,26 +54,28 @@ pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
     let one = c(1.0);
     let (sin, cos) = (view.half_sin_theta_o.lanes(), view.half_cos_theta_o.lanes());
     let upper = c(0.0).lt(sin);
-    let near = L::select(upper, fit.near[1].lanes(), fit.near[0].lanes());
+    let near = L::select(upper, fit.warp.near[1].lanes(), fit.warp.near[0].lanes());
     // `x` is `root / below`. The second operand of `min` wins over NaN.
     let below = sin.abs() + 0.5;
     let root = (cos * below).sqrt();
     let v = L::quotient(root * (near + 1.0), near.mul_add(below, root)).min(one);
     let piece = L::Index::search(v, [c(0.25), c(0.5), c(0.75)], PIECES - 1);
     let t = v.mul_add(c(8.0), piece.to_number().mul_add(c(-2.0), c(-1.0)));
-    let mut by = [one; 3];
-    let mut channel = 0;
-    while channel < 3 {
-        let mut power = POWERS - 1;
-        let mut sum = C::look_up_eight(&fit.coefficients[power][channel], piece, upper);
-        while power > 0 {
-            power -= 1;
-            let next = C::look_up_eight(&fit.coefficients[power][channel], piece, upper);
-            sum = sum.mul_add(t, next);
-        }
-        by[channel] = sum.min(c(0.0));
-        channel += 1;
+    let four = |four| C::look_up_four(&fit.pieces, piece, upper, four);
+    let [r, g, b, next] = four(0);
+    let mut by = [r, g, b];
+    macro_rules! horner {
+        ($($channel:literal $coefficient:expr;)*) => { $(
+            by[$channel] = by[$channel].mul_add(t, $coefficient);
+        )* };
     }
+    let [e, f, g, h] = four(1);
+    horner! { 0 next; 1 e; 2 f; 0 g; 1 h; }
+    let [i, j, k, l] = four(2);
+    horner! { 2 i; 0 j; 1 k; 2 l; }
+    let [m, n, o, _] = four(3);
+    horner! { 0 m; 1 n; 2 o; }
+    let by = L::together([by[0].min(c(0.0)), by[1].min(c(0.0)), by[2].min(c(0.0))]);
     // A sum loses digits next to -1, where no fit is: see `LEAST`.
     scaled::<L>(view, by, |color, by| color.mul_add(by, color))
 }

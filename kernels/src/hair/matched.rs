@@ -194,7 +194,7 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
 
     #[inline(always)]
     fn unfit<L: Lanes, C: Broadcast<L>>(fit: &AlbedoFit<C>) -> L {
-        fit.refused.lanes()
+        fit.warp.refused.lanes()
     }
 
     #[inline(always)]

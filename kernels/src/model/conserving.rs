@@ -160,37 +160,10 @@ pub struct ConservingMaterial<I, F> {
     fit: F,
 }
 
-impl<I: LaneStruct, F: LaneStruct<Number = I::Number>> LaneStruct for ConservingMaterial<I, F> {
-    type Number = I::Number;
-    type One = ConservingMaterial<I::One, F::One>;
-    type Eight = ConservingMaterial<I::Eight, F::Eight>;
-
-    #[inline]
-    fn make(path: &Path<'_>, next: &mut dyn FnMut(&Path<'_>) -> I::Number) -> Self {
-        Self {
-            inner: I::make(&Path::Field(path, "inner"), next),
-            fit: F::make(&Path::Field(path, "fit"), next),
-        }
-    }
-    #[inline]
-    fn visit(&self, path: &Path<'_>, see: &mut dyn FnMut(&Path<'_>, I::Number)) {
-        self.inner.visit(&Path::Field(path, "inner"), see);
-        self.fit.visit(&Path::Field(path, "fit"), see);
-    }
-    #[inline]
-    fn pack(items: [&Self::One; 8]) -> Self::Eight {
-        ConservingMaterial {
-            inner: I::pack(items.map(|item| &item.inner)),
-            fit: F::pack(items.map(|item| &item.fit)),
-        }
-    }
-    #[inline]
-    fn lane(eight: &Self::Eight, lane: usize) -> Self::One {
-        ConservingMaterial {
-            inner: I::lane(&eight.inner, lane),
-            fit: F::lane(&eight.fit, lane),
-        }
-    }
+crate::simd::lane_struct! {
+    @impl {I: LaneStruct, F: LaneStruct<Number = I::Number>} I::Number, ConservingMaterial
+    {I, F} {I::One, F::One} {I::Eight, F::Eight}
+    inner: I, fit: F
 }
 
 impl<M: Model> Model for Conserving<M> {

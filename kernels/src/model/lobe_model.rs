@@ -158,7 +158,7 @@ impl<P, C> Mixed<P, C> {
 }
 
 crate::simd::lane_struct! {
-    @impl {P: LaneStruct<Number = C>, C: Scalar} Mixed {P, C} {P::One, f32} {P::Eight, f32x8}
+    @impl {P: LaneStruct<Number = C>, C: Scalar} C, Mixed {P, C} {P::One, f32} {P::Eight, f32x8}
     prepared: P, mixture: Mixture<C>
 }
 

@@ -10,10 +10,11 @@
 
 use super::choice::Choice;
 use super::lanes::{
-    INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, by_splat, difference_fused,
+    INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, Scalar, by_splat, difference_fused,
     sealed::Sealed,
 };
 use super::schedule::Schedule;
+use super::table::Entries;
 use core::arch::asm;
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
@@ -60,6 +61,9 @@ impl Neg for Avx2 {
 }
 
 impl Sealed for Avx2 {}
+impl Scalar for Avx2 {
+    type Table = Entries<Self>;
+}
 
 /// An index from 0 to 3 per lane: its number, and where it is at least 1, 2 and 3. What is not used is not kept.
 #[derive(Clone, Copy, Debug)]
@@ -191,6 +195,28 @@ impl Lanes for Avx2 {
     fn keep(mask: __m256, x: Self) -> Self {
         Self(avx2!(_mm256_and_ps(mask, x.0)))
     }
+    #[inline(always)]
+    fn transpose([a, b, c, d, e, f, g, h]: [&[f32; 4]; 8]) -> [Self; 4] {
+        avx2!({
+            let [a, b, c, d] = [halves(a, e), halves(b, f), halves(c, g), halves(d, h)];
+            // Pairs of two rows' numbers, and of these pairs of pairs.
+            let pair = |mask: __m256| _mm256_castps_pd(mask);
+            let (low, next) = (
+                pair(_mm256_unpacklo_ps(a, b)),
+                pair(_mm256_unpacklo_ps(c, d)),
+            );
+            let (third, last) = (
+                pair(_mm256_unpackhi_ps(a, b)),
+                pair(_mm256_unpackhi_ps(c, d)),
+            );
+            [
+                Self(_mm256_castpd_ps(_mm256_unpacklo_pd(low, next))),
+                Self(_mm256_castpd_ps(_mm256_unpackhi_pd(low, next))),
+                Self(_mm256_castpd_ps(_mm256_unpacklo_pd(third, last))),
+                Self(_mm256_castpd_ps(_mm256_unpackhi_pd(third, last))),
+            ]
+        })
+    }
 }
 
 impl Schedule for Avx2 {
@@ -302,6 +328,14 @@ fn interleave(mut a: __m256, mut b: __m256) -> (__m256, __m256) {
         asm!("/* {0} {1} */", inout(ymm_reg) a, inout(ymm_reg) b, options(pure, nomem, nostack, preserves_flags));
     }
     (a, b)
+}
+
+/// Eight lanes of two rows of four.
+#[target_feature(enable = "avx")]
+#[inline]
+fn halves(low: &[f32; 4], high: &[f32; 4]) -> __m256 {
+    // SAFETY: there are four numbers in either row.
+    unsafe { _mm256_loadu2_m128(high.as_ptr(), low.as_ptr()) }
 }
 
 /// Two loads of 16 bytes, each of which a store of 16 bytes is forwarded to. From intrinsics the compiler makes one load of 32.

@@ -10,10 +10,11 @@
 
 use super::choice::Choice;
 use super::lanes::{
-    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, by_splat,
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, Scalar, by_splat,
     difference_fused, sealed::Sealed,
 };
 use super::schedule::Schedule;
+use super::table::Entries;
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
@@ -57,6 +58,9 @@ impl Neg for Avx512 {
 }
 
 impl Sealed for Avx512 {}
+impl Scalar for Avx512 {
+    type Table = Entries<Self>;
+}
 impl Schedule for Avx512 {}
 
 /// An index from 0 to 3 per lane: its number, and where it is at least 1, 2 and 3. What is not used is not kept.

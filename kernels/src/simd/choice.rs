@@ -1,6 +1,7 @@
 //! The choice of one of four per lane: by bounds that a number is compared with, and from tables.
 
 use super::lanes::{Broadcast, Lanes, lanes4};
+use super::table::Shared;
 
 /// An index from 0 to 3 per lane of `L`.
 pub trait Choice<L: Lanes<Index = Self>>: Copy {
@@ -45,6 +46,19 @@ pub trait Choice<L: Lanes<Index = Self>>: Copy {
         let [low, high] = halves(table);
         L::select(upper, self.look_up(&high), self.look_up(&low))
     }
+    /// Four numbers of the entry of each lane's index, and 4 more where the mask is set: the first, second, third or last four of
+    /// sixteen, the last of which is 0.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn look_up_four(self, upper: L::Mask, table: &Shared, four: usize) -> [L; 4] {
+        let [a, b, c, d] = &table.columns[four];
+        [
+            self.look_up_eight(upper, a),
+            self.look_up_eight(upper, b),
+            self.look_up_eight(upper, c),
+            self.look_up_eight(upper, d),
+        ]
+    }
     /// As [`look_up`](Self::look_up), of a table whose last two entries are equal.
     #[inline(always)]
     fn look_up_three(self, table: &[f32; 4]) -> L {
@@ -59,6 +73,6 @@ pub trait Choice<L: Lanes<Index = Self>>: Copy {
 
 /// The first four of eight, and the last.
 #[inline(always)]
-pub(super) fn halves<C: Copy>([a, b, c, d, e, f, g, h]: &[C; 8]) -> [[C; 4]; 2] {
+fn halves<C: Copy>([a, b, c, d, e, f, g, h]: &[C; 8]) -> [[C; 4]; 2] {
     [[*a, *b, *c, *d], [*e, *f, *g, *h]]
 }

@@ -214,23 +214,23 @@ macro_rules! lane_struct {
         }
 
         $crate::simd::lane_struct! {
-            @impl {C: $crate::simd::Scalar $($(, const $N: usize)+)?} $name
+            @impl {C: $crate::simd::Scalar $($(, const $N: usize)+)?} C, $name
             {C $($(, $N)+)?} {f32 $($(, $N)+)?} {$crate::simd::f32x8 $($(, $N)+)?}
             $($field: $Field),*
         }
     };
     (
-        @impl {$($generics:tt)*} $name:ident {$($own:tt)*} {$($one:tt)*} {$($eight:tt)*}
+        @impl {$($generics:tt)*} $Number:ty, $name:ident {$($own:tt)*} {$($one:tt)*} {$($eight:tt)*}
         $($field:ident: $Field:ty),*
     ) => {
         impl<$($generics)*> $crate::simd::LaneStruct for $name<$($own)*> {
-            type Number = C;
+            type Number = $Number;
             type One = $name<$($one)*>;
             type Eight = $name<$($eight)*>;
             #[inline]
             fn make(
                 path: &$crate::simd::Path<'_>,
-                next: &mut dyn FnMut(&$crate::simd::Path<'_>) -> C,
+                next: &mut dyn FnMut(&$crate::simd::Path<'_>) -> $Number,
             ) -> Self {
                 $name { $($field: <$Field as $crate::simd::LaneStruct>::make(
                     &$crate::simd::Path::Field(path, stringify!($field)),
@@ -241,7 +241,7 @@ macro_rules! lane_struct {
             fn visit(
                 &self,
                 path: &$crate::simd::Path<'_>,
-                see: &mut dyn FnMut(&$crate::simd::Path<'_>, C),
+                see: &mut dyn FnMut(&$crate::simd::Path<'_>, $Number),
             ) {
                 $($crate::simd::LaneStruct::visit(
                     &self.$field,

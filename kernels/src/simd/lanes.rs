@@ -9,11 +9,12 @@
 //! Comparisons are false for NaN. `min` and `max` return their second operand when either is NaN,
 //! as the machine does, so that one `min` at the end of a model turns a NaN into its bound.
 
-use super::choice::{Choice, halves};
+use super::choice::Choice;
 use super::schedule::Schedule;
+use super::table::{NUMBERS, Storage, Table};
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
-use wide::f32x8;
+use wide::{f32x8, i32x8};
 
 pub(crate) mod sealed {
     /// Keeps the backends in this crate.
@@ -21,8 +22,11 @@ pub(crate) mod sealed {
 }
 
 /// Entry of a struct of lanes: one number, or one per lane. Sealed.
-pub trait Scalar: sealed::Sealed + Copy + Debug + Send + Sync + 'static {}
-impl<T: sealed::Sealed + Copy + Debug + Send + Sync + 'static> Scalar for T {}
+pub trait Scalar: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
+    /// Form in which a [`Table`] of it is kept.
+    #[doc(hidden)]
+    type Table: Storage<Self>;
+}
 
 /// One number per lane, with the arithmetic that models are written in. The same number for all
 /// lanes is a float: `x * 0.5 + 1.0`.
@@ -129,6 +133,19 @@ pub trait Lanes:
     fn swap(mask: Self::Mask, a: Self, b: Self) -> (Self, Self);
     /// `x` where the mask is set, 0 elsewhere.
     fn keep(mask: Self::Mask, x: Self) -> Self;
+    /// The four numbers of a row per lane, of eight rows for eight lanes; else those of the first row.
+    #[doc(hidden)]
+    #[inline(always)]
+    #[must_use]
+    fn transpose(rows: [&[f32; 4]; 8]) -> [Self; 4] {
+        let [a, b, c, d] = *rows[0];
+        [
+            Self::splat(a),
+            Self::splat(b),
+            Self::splat(c),
+            Self::splat(d),
+        ]
+    }
 }
 
 /// Storage of lanes: one number for all of them, or one per lane.
@@ -149,15 +166,21 @@ pub trait Broadcast<L: Lanes>: Scalar {
     fn look_up(table: &[Self; 4], index: L::Index) -> L {
         index.choose(lanes4(table))
     }
-    /// The entry of each lane's index, and 4 more where `upper` is set.
+    /// Four numbers of the entry of each lane's index, and 4 more where `upper` is set: see [`Choice::look_up_four`].
+    #[doc(hidden)]
     #[inline(always)]
-    fn look_up_eight(table: &[Self; 8], index: L::Index, upper: L::Mask) -> L {
-        let [low, high] = halves(table);
-        L::select(
-            upper,
-            index.choose(lanes4(&high)),
-            index.choose(lanes4(&low)),
-        )
+    fn look_up_four(table: &Table<Self>, index: L::Index, upper: L::Mask, four: usize) -> [L; 4] {
+        let [a, b, c, d, e, f, g, h] = &table.0.entries();
+        let mut found = [L::splat(0.0); 4];
+        let mut i = 0;
+        while i < 4 && 4 * four + i < NUMBERS {
+            let n = 4 * four + i;
+            let low = index.choose(lanes4(&[a[n], b[n], c[n], d[n]]));
+            let high = index.choose(lanes4(&[e[n], f[n], g[n], h[n]]));
+            found[i] = L::select(upper, high, low);
+            i += 1;
+        }
+        found
     }
     /// The entry of each lane's index, of a table whose last two entries are equal: for less.
     #[inline(always)]
@@ -181,8 +204,8 @@ impl<L: Lanes> Broadcast<L> for f32 {
         index.look_up(table)
     }
     #[inline(always)]
-    fn look_up_eight(table: &[Self; 8], index: L::Index, upper: L::Mask) -> L {
-        index.look_up_eight(upper, table)
+    fn look_up_four(table: &Table<Self>, index: L::Index, upper: L::Mask, four: usize) -> [L; 4] {
+        index.look_up_four(upper, &table.0, four)
     }
     #[inline(always)]
     fn look_up_three(table: &[Self; 4], index: L::Index) -> L {
@@ -202,6 +225,25 @@ impl<L: Lanes<Stored = f32x8>> Broadcast<L> for f32x8 {
     #[inline(always)]
     fn fresh_lanes(&self) -> L {
         L::load_fresh(self)
+    }
+    #[inline(always)]
+    fn look_up_four(table: &Table<Self>, index: L::Index, upper: L::Mask, four: usize) -> [L; 4] {
+        let offset = L::select(upper, L::splat(4.0), L::splat(0.0));
+        // The index is below 8: said here, once for all lanes, it need not be checked for each.
+        const SEVEN: i32x8 = i32x8::new([7; 8]);
+        let number = (index.to_number() + offset).store().fast_trunc_int() & SEVEN;
+        let [i, j, k, l, m, n, o, p] = number.to_array().map(i32::cast_unsigned);
+        let [a, b, c, d, e, f, g, h] = &table.0;
+        L::transpose([
+            a.four(i, four),
+            b.four(j, four),
+            c.four(k, four),
+            d.four(l, four),
+            e.four(m, four),
+            f.four(n, four),
+            g.four(o, four),
+            h.four(p, four),
+        ])
     }
 }
 

@@ -6,8 +6,9 @@
 //! Models interleave equal steps of one packet in the same way, two or four of them.
 
 use super::choice::Choice;
-use super::lanes::{Broadcast, Lanes, Packet, by_splat, sealed::Sealed};
+use super::lanes::{Broadcast, Lanes, Packet, Scalar, by_splat, sealed::Sealed};
 use super::schedule::Schedule;
+use super::table::{Entries, Shared};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Two packets, or two equal steps of one, as lanes: each instruction for one is followed by that for the other.
@@ -24,6 +25,9 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 pub struct Pair<L>(pub L, pub L);
 
 impl<L: Lanes> Sealed for Pair<L> {}
+impl<L: Lanes> Scalar for Pair<L> {
+    type Table = Entries<Self>;
+}
 
 macro_rules! binary {
     ($($Trait:ident $method:ident;)*) => { $(
@@ -197,11 +201,10 @@ impl<L: Lanes> Choice<Pair<L>> for (L::Index, L::Index) {
         Pair(self.0.look_up(table), self.1.look_up(table))
     }
     #[inline(always)]
-    fn look_up_eight(self, upper: (L::Mask, L::Mask), table: &[f32; 8]) -> Pair<L> {
-        Pair(
-            self.0.look_up_eight(upper.0, table),
-            self.1.look_up_eight(upper.1, table),
-        )
+    fn look_up_four(self, upper: (L::Mask, L::Mask), table: &Shared, four: usize) -> [Pair<L>; 4] {
+        let [a, b, c, d] = self.0.look_up_four(upper.0, table, four);
+        let [e, f, g, h] = self.1.look_up_four(upper.1, table, four);
+        [Pair(a, e), Pair(b, f), Pair(c, g), Pair(d, h)]
     }
     #[inline(always)]
     fn look_up_three(self, table: &[f32; 4]) -> Pair<L> {

@@ -12,11 +12,16 @@ use core::hint::select_unpredictable;
 
 use super::choice::Choice;
 use super::lanes::{
-    INTEGER, INTEGER_BIAS, Lanes, ONE, ROUND_EXPONENT, UPPER, difference_split, sealed::Sealed,
+    INTEGER, INTEGER_BIAS, Lanes, ONE, ROUND_EXPONENT, Scalar, UPPER, difference_split,
+    sealed::Sealed,
 };
 use super::schedule::Schedule;
+use super::table::Shared;
 
 impl Sealed for f32 {}
+impl Scalar for f32 {
+    type Table = Shared;
+}
 
 /// The upper half of the digits, and the rest.
 #[inline(always)]
@@ -195,8 +200,8 @@ impl Choice<f32> for usize {
         table[self & 3]
     }
     #[inline(always)]
-    fn look_up_eight(self, upper: bool, table: &[f32; 8]) -> f32 {
-        table[(self & 3) + 4 * Self::from(upper)]
+    fn look_up_four(self, upper: bool, table: &Shared, four: usize) -> [f32; 4] {
+        table.rows.0[(self & 3) + 4 * Self::from(upper)][four]
     }
     #[inline(always)]
     fn look_up_three(self, table: &[f32; 4]) -> f32 {

@@ -20,6 +20,14 @@ pub trait Schedule: Sized {
         (a, b)
     }
 
+    /// Barrier after three numbers, with SSE2: none is used before all are computed. Compilers tend to compute each where it is
+    /// used, and keep what all are made of in memory until then.
+    #[inline(always)]
+    #[must_use]
+    fn together(three: [Self; 3]) -> [Self; 3] {
+        three
+    }
+
     /// [`interleave`](Self::interleave) of the two halves of a pair; others are returned unchanged.
     #[inline(always)]
     #[must_use]

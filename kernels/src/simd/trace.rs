@@ -6,10 +6,11 @@
 
 use super::choice::Choice;
 use super::lanes::{
-    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, ROUND_EXPONENT, UPPER, difference_fused,
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, ROUND_EXPONENT, Scalar, UPPER, difference_fused,
     difference_split, sealed::Sealed,
 };
 use super::schedule::Schedule;
+use super::table::Entries;
 use core::fmt;
 use core::marker::PhantomData;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -239,6 +240,9 @@ impl<R: Recorder> TracedMask<R> {
 }
 
 impl<R: Recorder, A: Arithmetic> Sealed for Traced<R, A> {}
+impl<R: Recorder, A: Arithmetic> Scalar for Traced<R, A> {
+    type Table = Entries<Self>;
+}
 impl<R: Recorder, A: Arithmetic> Schedule for Traced<R, A> {}
 
 macro_rules! binary {

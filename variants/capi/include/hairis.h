@@ -31,7 +31,7 @@ extern "C" {
 /* Rises when a struct, a size or a meaning changes; new functions, models and fields do not raise it. It is the number in
  * libhairis.so.1. */
 #define HAIRIS_ABI_VERSION 1
-#define HAIRIS_MATERIAL_SIZE 1024
+#define HAIRIS_MATERIAL_SIZE 1536
 #define HAIRIS_BSDF_SIZE 1024
 #define HAIRIS_NUMBERS 32
 

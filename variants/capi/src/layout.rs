@@ -55,7 +55,7 @@ constants! {
     /// Version of the interface: the number in the name of the shared library.
     ABI_VERSION: u32 = 1, "HAIRIS_ABI_VERSION";
     /// Bytes of a material.
-    MATERIAL_SIZE: usize = 1024, "HAIRIS_MATERIAL_SIZE";
+    MATERIAL_SIZE: usize = 1536, "HAIRIS_MATERIAL_SIZE";
     /// Bytes of a BSDF.
     BSDF_SIZE: usize = 1024, "HAIRIS_BSDF_SIZE";
     /// Largest count of numbers of a model.

@@ -1,10 +1,11 @@
 //! Fit of a material's albedo: made once per material, in eight lanes that never fuse, so that it has the same bits everywhere.
 
-use super::{AlbedoFit, HairLobes, PIECES, POWERS};
+use super::{AlbedoFit, HairLobes, PIECES, POWERS, Warp};
 use crate::hair::albedo::channels;
 use crate::hair::prepare_view;
 use crate::model::Bell;
 use crate::simd::portable::Unfused;
+use crate::simd::table::{ENTRIES, NUMBERS, Table};
 use crate::simd::{Broadcast, Lanes, Vec3x};
 use core::f32::consts::{FRAC_PI_2, PI};
 use wide::f32x8;
@@ -222,25 +223,29 @@ fn relative_error(c: &[f32; NODES], least: f32) -> f32 {
 impl AlbedoFit<f32> {
     /// The fit of a material's lobes.
     pub(in crate::hair) fn of<B: Bell>(lobes: &HairLobes<f32>) -> Self {
-        let mut fit = Self {
+        let mut warp = Warp {
             near: [1.0; 2],
-            coefficients: [[[0.0; 2 * PIECES]; 3]; POWERS],
             refused: 1.0,
         };
+        let mut entries = [[0.0; NUMBERS]; ENTRIES];
         if let Some(low) = Side::accurate::<B>(lobes, -1.0)
             && let Some(high) = Side::accurate::<B>(lobes, 1.0)
         {
-            fit.near = [low.near, high.near];
-            for (power, table) in fit.coefficients.iter_mut().enumerate() {
-                for (channel, pieces) in table.iter_mut().enumerate() {
-                    let (halves, _) = pieces.as_chunks_mut::<PIECES>();
-                    for (half, side) in halves.iter_mut().zip([&low, &high]) {
-                        *half = side.coefficients[power][channel];
-                    }
+            warp = Warp {
+                near: [low.near, high.near],
+                refused: 0.0,
+            };
+            for (piece, entry) in entries.iter_mut().enumerate() {
+                let side = if piece < PIECES { &low } else { &high };
+                let coefficients = side.coefficients.iter().rev().flatten();
+                for (number, pieces) in entry.iter_mut().zip(coefficients) {
+                    *number = pieces[piece % PIECES];
                 }
             }
-            fit.refused = 0.0;
         }
-        fit
+        Self {
+            warp,
+            pieces: Table::new(&entries),
+        }
     }
 }
