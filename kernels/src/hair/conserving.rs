@@ -75,9 +75,13 @@ pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
     horner! { 2 i; 0 j; 1 k; 2 l; }
     let [m, n, o, _] = four(3);
     horner! { 0 m; 1 n; 2 o; }
-    let by = L::together([by[0].min(c(0.0)), by[1].min(c(0.0)), by[2].min(c(0.0))]);
-    // A sum loses digits next to -1, where no fit is: see `LEAST`.
-    scaled::<L>(view, by, |color, by| color.mul_add(by, color))
+    // The sum loses digits next to -1, where no fit is: see `LEAST`.
+    let by = [
+        by[0].min(c(0.0)) + 1.0,
+        by[1].min(c(0.0)) + 1.0,
+        by[2].min(c(0.0)) + 1.0,
+    ];
+    scaled::<L>(view, L::together(by))
 }
 
 /// The view terms with each channel of the lobes divided by its albedo where that is above 1, to within 2e-4; in the lanes of
@@ -96,16 +100,12 @@ pub(super) fn integrated<B: Bell, L: Lanes>(
         by[channel] = L::quotient(one, albedo);
         channel += 1;
     }
-    scaled::<L>(view, by, |color, by| color * by)
+    scaled::<L>(view, by)
 }
 
-/// The view terms with colours that a function makes of each colour and the number of its channel.
+/// The view terms with each colour multiplied by the number of its channel.
 #[inline(always)]
-fn scaled<L: Lanes>(
-    view: &HairView<L::Stored>,
-    by: [L; 3],
-    color: impl Fn(L, L) -> L,
-) -> HairView<L::Stored> {
+fn scaled<L: Lanes>(view: &HairView<L::Stored>, by: [L; 3]) -> HairView<L::Stored> {
     let hair = &view.lobes;
     let mut colors = [
         lanes3(&hair.color_r),
@@ -114,9 +114,9 @@ fn scaled<L: Lanes>(
     ];
     let mut channel = 0;
     while channel < 3 {
-        colors[0][channel] = color(colors[0][channel], by[channel]);
-        colors[1][channel] = color(colors[1][channel], by[channel]);
-        colors[2][channel] = color(colors[2][channel], by[channel]);
+        colors[0][channel] = colors[0][channel] * by[channel];
+        colors[1][channel] = colors[1][channel] * by[channel];
+        colors[2][channel] = colors[2][channel] * by[channel];
         channel += 1;
     }
     let [r, tt, trt] = colors;
