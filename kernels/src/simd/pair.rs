@@ -163,6 +163,12 @@ impl<L: Lanes> Schedule for Pair<L> {
         Self(self.0.alone(), self.1.alone())
     }
     #[inline(always)]
+    fn together([a, b, c]: [Self; 3]) -> [Self; 3] {
+        let [d, e, f] = L::together([a.0, b.0, c.0]);
+        let [g, h, i] = L::together([a.1, b.1, c.1]);
+        [Self(d, g), Self(e, h), Self(f, i)]
+    }
+    #[inline(always)]
     fn interleave(a: Self, b: Self) -> (Self, Self) {
         let (a0, b0) = L::interleave(a.0, b.0);
         let (a1, b1) = L::interleave(a.1, b.1);

@@ -27,9 +27,10 @@ pub(crate) const FUSES: bool = cfg!(any(
 /// Scheduling barrier.
 ///
 /// - Effect: an empty `asm!` block that LLVM must assume reads and writes the numbers, so that it computes all of them before it
-///   uses one, and by the shuffles that are written. Emits no instruction. Miri runs no assembly, and goes without.
-/// - Measured: slices of hits that conserve energy took 1.20 times those that do not, for 1.29 without it (AMD Zen 3, SSE2, at
-///   the commit that brought it).
+///   uses one. Emits no instruction. Miri runs no assembly, and goes without.
+/// - Measured: slices of hits that conserve energy took 1.20 times those that do not; 1.24 with the barrier after transposed
+///   numbers alone, where LLVM otherwise makes each number by shuffles of its own, and 1.29 with none (AMD Zen 3, SSE2, at the
+///   commit that brought it).
 /// - Measure again: return `four` in its place, and compare `cargo bench -p hairis-benches --bench hits`.
 #[inline(always)]
 fn together(four: [f32x4; 4]) -> [f32x4; 4] {
@@ -56,9 +57,25 @@ fn together(four: [f32x4; 4]) -> [f32x4; 4] {
     four
 }
 
-/// The first four lanes, and the last.
+/// The four numbers of each of four rows, row `i` in lane `i`.
 #[inline(always)]
-fn halves(lanes: f32x8) -> [f32x4; 2] {
+fn transposed([a, b, c, d]: [&[f32; 4]; 4]) -> [f32x4; 4] {
+    together(f32x4::transpose([
+        f32x4::new(*a),
+        f32x4::new(*b),
+        f32x4::new(*c),
+        f32x4::new(*d),
+    ]))
+}
+
+/// The first four lanes, and the last.
+#[cfg(all(
+    target_arch = "x86_64",
+    target_feature = "sse2",
+    not(target_feature = "avx")
+))]
+#[inline(always)]
+fn split_halves(lanes: f32x8) -> [f32x4; 2] {
     let [a, b, c, d, e, f, g, h] = lanes.to_array();
     [f32x4::new([a, b, c, d]), f32x4::new([e, f, g, h])]
 }
@@ -201,11 +218,16 @@ macro_rules! eight_lanes {
             type Table = $Table;
         }
         impl<$($generics)*> Schedule for $Lanes {
+            #[cfg(all(
+                target_arch = "x86_64",
+                target_feature = "sse2",
+                not(target_feature = "avx")
+            ))]
             #[inline(always)]
             fn together(three: [Self; 3]) -> [Self; 3] {
-                let [a, b, c] = three.map(|lanes| halves(lanes.unwrap()));
-                let [a, d, b, e] = together([a[0], a[1], b[0], b[1]]);
-                let [b, e, c, f] = together([b, e, c[0], c[1]]);
+                let [[a, d], [b, e], [c, f]] = three.map(|lanes| split_halves(lanes.unwrap()));
+                let [a, d, b, e] = together([a, d, b, e]);
+                let [b, e, c, f] = together([b, e, c, f]);
                 [both(a, d), both(b, e), both(c, f)].map(Self::wrap)
             }
         }
@@ -330,14 +352,6 @@ macro_rules! eight_lanes {
             fn keep(mask: f32x8, x: Self) -> Self {
                 Self::wrap(mask & x.unwrap())
             }
-            #[inline(always)]
-            fn transpose([a, b, c, d, e, f, g, h]: [&[f32; 4]; 8]) -> [Self; 4] {
-                let four = |a: &[f32; 4], b: &[f32; 4], c: &[f32; 4], d: &[f32; 4]| {
-                    together(f32x4::transpose([*a, *b, *c, *d].map(f32x4::new)))
-                };
-                let ([i, j, k, l], [m, n, o, p]) = (four(a, b, c, d), four(e, f, g, h));
-                [both(i, m), both(j, n), both(k, o), both(l, p)].map(Self::wrap)
-            }
         }
 
         impl<$($generics)*> Choice<$Lanes> for [f32x8; 3] {
@@ -367,21 +381,26 @@ macro_rules! eight_lanes {
             // Loads of four numbers of an entry: a blend, of which seven give one number, is six instructions of SSE2.
             #[inline(always)]
             fn look_up_four(self, upper: f32x8, table: &Shared, four: usize) -> [$Lanes; 4] {
+                self.look_up_rows(upper, [&table.rows; 8], four)
+            }
+            #[inline(always)]
+            fn look_up_rows(
+                self,
+                upper: f32x8,
+                [a, b, c, d, e, f, g, h]: [&Rows; 8],
+                four: usize,
+            ) -> [$Lanes; 4] {
                 const FOUR: u32x8 = u32x8::new([4; 8]);
+                // The index is below 8: said here, for all lanes at once, it need not be checked for each.
+                const SEVEN: u32x8 = u32x8::new([7; 8]);
                 // A set mask is -1 as an integer.
-                let [a, b, c] = [self[0].to_bits(), self[1].to_bits(), self[2].to_bits()];
-                let number = (upper.to_bits() & FOUR) - (a + b + c);
-                let ([i, j, k, l, m, n, o, p], rows) = (number.to_array(), &table.rows);
-                Lanes::transpose([
-                    rows.four(i, four),
-                    rows.four(j, four),
-                    rows.four(k, four),
-                    rows.four(l, four),
-                    rows.four(m, four),
-                    rows.four(n, four),
-                    rows.four(o, four),
-                    rows.four(p, four),
-                ])
+                let [one, two, three] = [self[0].to_bits(), self[1].to_bits(), self[2].to_bits()];
+                let number = ((upper.to_bits() & FOUR) - (one + two + three)) & SEVEN;
+                let [i, j, k, l, m, n, o, p] = number.to_array().map(|number| number as usize);
+                let low = [a.four(i, four), b.four(j, four), c.four(k, four), d.four(l, four)];
+                let high = [e.four(m, four), f.four(n, four), g.four(o, four), h.four(p, four)];
+                let ([a, b, c, d], [e, f, g, h]) = (transposed(low), transposed(high));
+                [both(a, e), both(b, f), both(c, g), both(d, h)].map(<$Lanes>::wrap)
             }
             #[inline(always)]
             fn to_number(self) -> $Lanes {

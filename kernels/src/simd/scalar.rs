@@ -201,7 +201,7 @@ impl Choice<f32> for usize {
     }
     #[inline(always)]
     fn look_up_four(self, upper: bool, table: &Shared, four: usize) -> [f32; 4] {
-        table.rows.0[(self & 3) + 4 * Self::from(upper)][four]
+        *table.rows.four((self & 3) + 4 * Self::from(upper), four)
     }
     #[inline(always)]
     fn look_up_three(self, table: &[f32; 4]) -> f32 {

@@ -20,8 +20,8 @@ pub trait Schedule: Sized {
         (a, b)
     }
 
-    /// Barrier after three numbers, with SSE2: none is used before all are computed. Compilers tend to compute each where it is
-    /// used, and keep what all are made of in memory until then.
+    /// Barrier after three numbers, on x86-64 without AVX: they are computed side by side. Compilers tend to compute each where it
+    /// is used, and keep what it is made of in memory until then.
     #[inline(always)]
     #[must_use]
     fn together(three: [Self; 3]) -> [Self; 3] {

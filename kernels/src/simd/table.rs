@@ -64,7 +64,7 @@ pub trait Storage<C>: Copy + Debug + Send + Sync + 'static {
     fn entries(&self) -> Entries<C>;
 }
 
-/// Tables of lanes whose constants are not looked up by index.
+/// Tables of lanes that choose by selections, or have no constants of materials.
 impl<C: Scalar> Storage<C> for Entries<C> {
     #[inline]
     fn new(entries: &Self) -> Self {
@@ -76,13 +76,13 @@ impl<C: Scalar> Storage<C> for Entries<C> {
     }
 }
 
-/// The fours of numbers of an entry, the last number of which is 0.
+/// Sixteen of what an entry has fifteen of, four by four: the last is 0.
 pub(super) type Fours<T> = [[T; 4]; 4];
 
-/// The numbers of each entry, four by four, as one lane reads them and lanes that no shuffle chooses for.
+/// The entries, each four by four numbers. One lane reads a four of one entry, and eight lanes read a four of eight and transpose them.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(16))]
-pub struct Rows(pub(super) [Fours<f32>; ENTRIES]);
+pub struct Rows([Fours<f32>; ENTRIES]);
 
 impl Rows {
     fn new(entries: &Entries<f32>) -> Self {
@@ -94,8 +94,8 @@ impl Rows {
     }
     /// Four numbers of an entry from 0 to 7.
     #[inline(always)]
-    pub(super) fn four(&self, entry: u32, four: usize) -> &[f32; 4] {
-        &self.0[entry as usize & (ENTRIES - 1)][four]
+    pub(super) fn four(&self, entry: usize, four: usize) -> &[f32; 4] {
+        &self.0[entry & (ENTRIES - 1)][four]
     }
 }
 
@@ -144,5 +144,113 @@ impl Storage<f32x8> for [Rows; 8] {
     fn entries(&self) -> Entries<f32x8> {
         let lanes = self.each_ref().map(Rows::entries);
         from_fn(|entry| from_fn(|number| f32x8::new(lanes.map(|entries| entries[entry][number]))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::{Broadcast, Choice, Kernel, Lanes, Level, Pair};
+
+    /// The four fours of the entries of a number per lane: of its magnitude, and four more where it is above 0.
+    struct Find<'a, C: Scalar> {
+        x: f32x8,
+        table: &'a Table<C>,
+    }
+
+    #[inline(always)]
+    fn found<L: Lanes, C: Broadcast<L>>(x: L, table: &Table<C>) -> [[L; 4]; 4] {
+        let one = L::splat(1.0);
+        let index = L::Index::search(x.abs(), [one, one + 1.0, one + 2.0], 3);
+        let upper = L::splat(0.0).lt(x);
+        [
+            C::look_up_four(table, index, upper, 0),
+            C::look_up_four(table, index, upper, 1),
+            C::look_up_four(table, index, upper, 2),
+            C::look_up_four(table, index, upper, 3),
+        ]
+    }
+
+    macro_rules! find {
+        ($($C:ty)*) => { $(
+            impl Kernel for Find<'_, $C> {
+                type Output = Fours<f32x8>;
+
+                #[inline(always)]
+                fn run<L: Lanes<Stored = f32x8>>(self) -> Fours<f32x8> {
+                    found::<L, $C>(self.x.lanes(), self.table).map(|four| four.map(L::store))
+                }
+            }
+        )* };
+    }
+    find! { f32 f32x8 }
+
+    /// Table whose numbers tell table, entry and place.
+    fn table(number: usize) -> Table<f32> {
+        let place = |entry: usize, place: usize| 1000 * number + 100 * entry + place;
+        Table::new(&from_fn(|entry| {
+            from_fn(|i| u16::try_from(place(entry, i)).unwrap_or_default().into())
+        }))
+    }
+
+    #[test]
+    fn lanes_read_the_entry_of_their_index() {
+        let numbers = [-0.5, -1.5, -2.5, -3.5, 0.5, 1.5, 2.5, 3.5_f32];
+        let tables: [Table<f32>; 8] = from_fn(table);
+        let packed = Table::<f32>::pack(tables.each_ref());
+        let x = f32x8::new(numbers);
+        // What the entry `entry` of a table holds at a place.
+        let held = |table: &Table<f32>, entry: usize, place: usize| {
+            table.0.entries()[entry].get(place).copied().unwrap_or(0.0)
+        };
+        for level in Level::available() {
+            let shared = level.run(Find {
+                x,
+                table: &tables[1],
+            });
+            let apart = level.run(Find { x, table: &packed });
+            for (place, [shared, apart]) in
+                (0..16).map(|i| (i, [&shared, &apart].map(|t| t[i / 4][i % 4])))
+            {
+                let expected = f32x8::new(from_fn(|lane| held(&tables[1], lane, place)));
+                assert_eq!(shared, expected, "{level}, shared, place {place}");
+                let expected = f32x8::new(from_fn(|lane| held(&tables[lane], lane, place)));
+                assert_eq!(apart, expected, "{level}, a table each, place {place}");
+            }
+        }
+        for (entry, x) in numbers.into_iter().enumerate() {
+            let pair = found(Pair(x, numbers[0]), &tables[2]);
+            for (place, Pair(one, other)) in pair.as_flattened().iter().enumerate() {
+                assert_eq!(
+                    *one,
+                    held(&tables[2], entry, place),
+                    "one lane, place {place}"
+                );
+                assert_eq!(
+                    *other,
+                    held(&tables[2], 0, place),
+                    "the other lane, place {place}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn tables_are_packed_and_flattened() {
+        let tables: [Table<f32>; 8] = from_fn(table);
+        let packed = Table::<f32>::pack(tables.each_ref());
+        for (lane, table) in tables.iter().enumerate() {
+            assert_eq!(Table::<f32>::lane(&packed, lane), *table, "lane {lane}");
+        }
+        let mut numbers = [f32x8::ZERO; ENTRIES * NUMBERS];
+        let mut seen = numbers.iter_mut();
+        packed.visit(&Path::Root, &mut |_, number| {
+            *seen.next().expect("a place for each number") = number;
+        });
+        assert!(seen.next().is_none(), "fewer numbers than places");
+        let mut next = numbers.into_iter();
+        let made: Table<f32x8> =
+            LaneStruct::make(&Path::Root, &mut |_| next.next().expect("a number"));
+        assert_eq!(made, packed);
     }
 }

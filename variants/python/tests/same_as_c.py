@@ -44,7 +44,7 @@ def nanoseconds(call: Callable[[], object], n: int) -> float:
 
 def main() -> None:
     library = C.CDLL(sys.argv[1])
-    params, material, bsdf = Params(), room(1024), room(1024)
+    params, material, bsdf = Params(), room(1536), room(1024)
     assert library.hairis_params_init(C.byref(params), b"gaussian", b"matched", b"brown", None) == 0
     assert library.hairis_material_init(C.c_void_p(material.ctypes.data), C.byref(params), 0, None) == 0
     library.hairis_prepare.argtypes = [C.c_void_p, C.c_void_p, C.c_float, C.c_float, C.c_float, C.c_float]
