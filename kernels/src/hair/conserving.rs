@@ -66,24 +66,19 @@ pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
     let v = L::quotient(root * (near + 1.0), near.mul_add(below, root)).min(one);
     let piece = L::Index::search(v, [c(0.25), c(0.5), c(0.75)], PIECES - 1);
     let t = v.mul_add(c(8.0), piece.to_number().mul_add(c(-2.0), c(-1.0)));
-    // Not a closure: those over lanes are not inlined into functions of target features.
-    macro_rules! four {
-        ($four:literal) => {
-            C::look_up_four(&fit.pieces, piece, upper, $four)
-        };
-    }
-    let [r, g, b, next] = four!(0);
+    let four = |four| C::look_up_four(&fit.pieces, piece, upper, four);
+    let [r, g, b, next] = four(0);
     let mut by = [r, g, b];
     macro_rules! horner {
         ($($channel:literal $coefficient:expr;)*) => { $(
             by[$channel] = by[$channel].mul_add(t, $coefficient);
         )* };
     }
-    let [e, f, g, h] = four!(1);
+    let [e, f, g, h] = four(1);
     horner! { 0 next; 1 e; 2 f; 0 g; 1 h; }
-    let [i, j, k, l] = four!(2);
+    let [i, j, k, l] = four(2);
     horner! { 2 i; 0 j; 1 k; 2 l; }
-    let [m, n, o, _] = four!(3);
+    let [m, n, o, _] = four(3);
     horner! { 0 m; 1 n; 2 o; }
     let by = [by[0].min(c(0.0)), by[1].min(c(0.0)), by[2].min(c(0.0))];
     // Either sum loses digits next to -1, where no fit is: see `LEAST`.

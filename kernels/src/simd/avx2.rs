@@ -14,7 +14,7 @@ use super::lanes::{
     sealed::Sealed,
 };
 use super::schedule::Schedule;
-use super::table::{Entries, Rows};
+use super::table::Entries;
 use core::arch::asm;
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
@@ -195,6 +195,26 @@ impl Lanes for Avx2 {
     fn keep(mask: __m256, x: Self) -> Self {
         Self(avx2!(_mm256_and_ps(mask, x.0)))
     }
+    #[inline(always)]
+    fn transpose([a, b, c, d, e, f, g, h]: [&[f32; 4]; 8]) -> [Self; 4] {
+        avx2!({
+            let [a, b, c, d] = [
+                two_rows(a, e),
+                two_rows(b, f),
+                two_rows(c, g),
+                two_rows(d, h),
+            ];
+            // Pairs of numbers of the first two rows, and of the last.
+            let (low, next) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
+            let (third, last) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
+            [
+                Self(_mm256_shuffle_ps::<0b01_00_01_00>(low, next)),
+                Self(_mm256_shuffle_ps::<0b11_10_11_10>(low, next)),
+                Self(_mm256_shuffle_ps::<0b01_00_01_00>(third, last)),
+                Self(_mm256_shuffle_ps::<0b11_10_11_10>(third, last)),
+            ]
+        })
+    }
 }
 
 impl Schedule for Avx2 {
@@ -272,27 +292,6 @@ impl Choice<Avx2> for Indices {
         }))
     }
     #[inline(always)]
-    fn look_up_rows(
-        self,
-        upper: __m256,
-        [a, b, c, d, e, f, g, h]: [&Rows; 8],
-        four: usize,
-    ) -> [Avx2; 4] {
-        avx2!({
-            let offset = _mm256_and_si256(_mm256_castps_si256(upper), _mm256_set1_epi32(4));
-            let number = _mm256_or_si256(self.number, offset);
-            // The index is below 8: said here, for all lanes at once, it need not be checked for each.
-            let number = _mm256_and_si256(number, _mm256_set1_epi32(7));
-            let [i, j, k, l, m, n, o, p] = to_array(number);
-            transposed([
-                two_rows(a.four(i, four), e.four(m, four)),
-                two_rows(b.four(j, four), f.four(n, four)),
-                two_rows(c.four(k, four), g.four(o, four)),
-                two_rows(d.four(l, four), h.four(p, four)),
-            ])
-        })
-    }
-    #[inline(always)]
     fn look_up_three(self, table: &[f32; 4]) -> Avx2 {
         self.look_up(table)
     }
@@ -335,48 +334,6 @@ fn interleave(mut a: __m256, mut b: __m256) -> (__m256, __m256) {
 fn two_rows(low: &[f32; 4], high: &[f32; 4]) -> __m256 {
     // SAFETY: there are four numbers in either row.
     unsafe { _mm256_loadu2_m128(high.as_ptr(), low.as_ptr()) }
-}
-
-/// The numbers of each index in its lane: of four rows for the lower lanes, and four for the upper.
-#[target_feature(enable = "avx")]
-#[inline]
-fn transposed([a, b, c, d]: [__m256; 4]) -> [Avx2; 4] {
-    // Pairs of numbers of the first two rows, and of the last.
-    let (low, next) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
-    let (third, last) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
-    [
-        Avx2(_mm256_shuffle_ps::<0b01_00_01_00>(low, next)),
-        Avx2(_mm256_shuffle_ps::<0b11_10_11_10>(low, next)),
-        Avx2(_mm256_shuffle_ps::<0b01_00_01_00>(third, last)),
-        Avx2(_mm256_shuffle_ps::<0b11_10_11_10>(third, last)),
-    ]
-}
-
-/// The indices, none of which is negative: through registers, as loads of single numbers would wait for a store of eight.
-#[target_feature(enable = "avx2")]
-#[inline]
-fn to_array(number: __m256i) -> [usize; 8] {
-    let [low, high] = [
-        _mm256_castsi256_si128(number),
-        _mm256_extracti128_si256::<1>(number),
-    ];
-    [
-        index::<0>(low),
-        index::<1>(low),
-        index::<2>(low),
-        index::<3>(low),
-        index::<0>(high),
-        index::<1>(high),
-        index::<2>(high),
-        index::<3>(high),
-    ]
-}
-
-/// One of four indices.
-#[target_feature(enable = "avx2")]
-#[inline]
-fn index<const I: i32>(four: __m128i) -> usize {
-    _mm_extract_epi32::<I>(four).cast_unsigned() as usize
 }
 
 /// Two loads of 16 bytes, each of which a store of 16 bytes is forwarded to. From intrinsics the compiler makes one load of 32.

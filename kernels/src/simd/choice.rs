@@ -1,7 +1,7 @@
 //! The choice of one of four per lane: by bounds that a number is compared with, and from tables.
 
 use super::lanes::{Broadcast, Lanes, lanes4};
-use super::table::{Rows, Shared};
+use super::table::Shared;
 
 /// An index from 0 to 3 per lane of `L`.
 pub trait Choice<L: Lanes<Index = Self>>: Copy {
@@ -59,12 +59,6 @@ pub trait Choice<L: Lanes<Index = Self>>: Copy {
             self.look_up_eight(upper, c),
             self.look_up_eight(upper, d),
         ]
-    }
-    /// As [`look_up_four`](Self::look_up_four), of a table for each of eight lanes.
-    #[doc(hidden)]
-    #[inline(always)]
-    fn look_up_rows(self, _upper: L::Mask, _tables: [&Rows; 8], _four: usize) -> [L; 4] {
-        unreachable!("lanes that are not eight have no table each")
     }
     /// As [`look_up`](Self::look_up), of a table whose last two entries are equal.
     #[inline(always)]

@@ -352,6 +352,12 @@ macro_rules! eight_lanes {
             fn keep(mask: f32x8, x: Self) -> Self {
                 Self::wrap(mask & x.unwrap())
             }
+            #[inline(always)]
+            fn transpose([a, b, c, d, e, f, g, h]: [&[f32; 4]; 8]) -> [Self; 4] {
+                let (low, high) = (transposed([a, b, c, d]), transposed([e, f, g, h]));
+                let ([a, b, c, d], [e, f, g, h]) = (low, high);
+                [both(a, e), both(b, f), both(c, g), both(d, h)].map(Self::wrap)
+            }
         }
 
         impl<$($generics)*> Choice<$Lanes> for [f32x8; 3] {
@@ -381,26 +387,15 @@ macro_rules! eight_lanes {
             // Loads of four numbers of an entry: a blend, of which seven give one number, is six instructions of SSE2.
             #[inline(always)]
             fn look_up_four(self, upper: f32x8, table: &Shared, four: usize) -> [$Lanes; 4] {
-                self.look_up_rows(upper, [&table.rows; 8], four)
-            }
-            #[inline(always)]
-            fn look_up_rows(
-                self,
-                upper: f32x8,
-                [a, b, c, d, e, f, g, h]: [&Rows; 8],
-                four: usize,
-            ) -> [$Lanes; 4] {
                 const FOUR: u32x8 = u32x8::new([4; 8]);
                 // The index is below 8: said here, for all lanes at once, it need not be checked for each.
                 const SEVEN: u32x8 = u32x8::new([7; 8]);
                 // A set mask is -1 as an integer.
                 let [one, two, three] = [self[0].to_bits(), self[1].to_bits(), self[2].to_bits()];
                 let number = ((upper.to_bits() & FOUR) - (one + two + three)) & SEVEN;
-                let [i, j, k, l, m, n, o, p] = number.to_array().map(|number| number as usize);
-                let low = [a.four(i, four), b.four(j, four), c.four(k, four), d.four(l, four)];
-                let high = [e.four(m, four), f.four(n, four), g.four(o, four), h.four(p, four)];
-                let ([a, b, c, d], [e, f, g, h]) = (transposed(low), transposed(high));
-                [both(a, e), both(b, f), both(c, g), both(d, h)].map(<$Lanes>::wrap)
+                let ([i, j, k, l, m, n, o, p], rows) = (number.to_array(), &table.rows);
+                let row = |index: u32| rows.four(index as usize, four);
+                Lanes::transpose([row(i), row(j), row(k), row(l), row(m), row(n), row(o), row(p)])
             }
             #[inline(always)]
             fn to_number(self) -> $Lanes {
