@@ -66,27 +66,32 @@ pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
     let v = L::quotient(root * (near + 1.0), near.mul_add(below, root)).min(one);
     let piece = L::Index::search(v, [c(0.25), c(0.5), c(0.75)], PIECES - 1);
     let t = v.mul_add(c(8.0), piece.to_number().mul_add(c(-2.0), c(-1.0)));
-    let four = |four| C::look_up_four(&fit.pieces, piece, upper, four);
-    let [r, g, b, next] = four(0);
+    // Not a closure: those over lanes may become calls, out of functions of target features, where compilers save space.
+    macro_rules! four {
+        ($four:literal) => {
+            C::look_up_four(&fit.pieces, piece, upper, $four)
+        };
+    }
+    let [r, g, b, next] = four!(0);
     let mut by = [r, g, b];
     macro_rules! horner {
         ($($channel:literal $coefficient:expr;)*) => { $(
             by[$channel] = by[$channel].mul_add(t, $coefficient);
         )* };
     }
-    let [e, f, g, h] = four(1);
+    let [e, f, g, h] = four!(1);
     horner! { 0 next; 1 e; 2 f; 0 g; 1 h; }
-    let [i, j, k, l] = four(2);
+    let [i, j, k, l] = four!(2);
     horner! { 2 i; 0 j; 1 k; 2 l; }
-    let [m, n, o, _] = four(3);
+    let [m, n, o, _] = four!(3);
     horner! { 0 m; 1 n; 2 o; }
     let by = [by[0].min(c(0.0)), by[1].min(c(0.0)), by[2].min(c(0.0))];
     // Either sum loses digits next to -1, where no fit is: see `LEAST`.
     if L::FUSES {
-        return scaled::<L>(view, by, |color, by| color.mul_add(by, color));
+        return scaled::<L, true>(view, by);
     }
     let by = L::together([by[0] + 1.0, by[1] + 1.0, by[2] + 1.0]);
-    scaled::<L>(view, by, |color, by| color * by)
+    scaled::<L, false>(view, by)
 }
 
 /// The view terms with each channel of the lobes divided by its albedo where that is above 1, to within 2e-4; in the lanes of
@@ -105,15 +110,14 @@ pub(super) fn integrated<B: Bell, L: Lanes>(
         by[channel] = L::quotient(one, albedo);
         channel += 1;
     }
-    scaled::<L>(view, by, |color, by| color * by)
+    scaled::<L, false>(view, by)
 }
 
-/// The view terms with colours that a function makes of each colour and the number of its channel.
+/// The view terms with each colour multiplied by the number of its channel; with `ADD`, by 1 and that number.
 #[inline(always)]
-fn scaled<L: Lanes>(
+fn scaled<L: Lanes, const ADD: bool>(
     view: &HairView<L::Stored>,
     by: [L; 3],
-    color: impl Fn(L, L) -> L,
 ) -> HairView<L::Stored> {
     let hair = &view.lobes;
     let mut colors = [
@@ -123,9 +127,16 @@ fn scaled<L: Lanes>(
     ];
     let mut channel = 0;
     while channel < 3 {
-        colors[0][channel] = color(colors[0][channel], by[channel]);
-        colors[1][channel] = color(colors[1][channel], by[channel]);
-        colors[2][channel] = color(colors[2][channel], by[channel]);
+        let mut lobe = 0;
+        while lobe < 3 {
+            let color = colors[lobe][channel];
+            colors[lobe][channel] = if ADD {
+                color.mul_add(by[channel], color)
+            } else {
+                color * by[channel]
+            };
+            lobe += 1;
+        }
         channel += 1;
     }
     let [r, tt, trt] = colors;

@@ -228,9 +228,7 @@ impl<L: Lanes<Stored = f32x8>> Broadcast<L> for f32x8 {
         // The index is below 8: said here, for all lanes at once, it need not be checked for each.
         const SEVEN: i32x8 = i32x8::new([7; 8]);
         let number = (index.to_number() + offset).store().fast_trunc_int() & SEVEN;
-        let [i, j, k, l, m, n, o, p] = number
-            .to_array()
-            .map(|index| index.cast_unsigned() as usize);
+        let [i, j, k, l, m, n, o, p] = number.to_array();
         let [a, b, c, d, e, f, g, h] = &table.0;
         L::transpose([
             a.four(i, four),

@@ -394,8 +394,16 @@ macro_rules! eight_lanes {
                 let [one, two, three] = [self[0].to_bits(), self[1].to_bits(), self[2].to_bits()];
                 let number = ((upper.to_bits() & FOUR) - (one + two + three)) & SEVEN;
                 let ([i, j, k, l, m, n, o, p], rows) = (number.to_array(), &table.rows);
-                let row = |index: u32| rows.four(index as usize, four);
-                Lanes::transpose([row(i), row(j), row(k), row(l), row(m), row(n), row(o), row(p)])
+                Lanes::transpose([
+                    rows.four(i.cast_signed(), four),
+                    rows.four(j.cast_signed(), four),
+                    rows.four(k.cast_signed(), four),
+                    rows.four(l.cast_signed(), four),
+                    rows.four(m.cast_signed(), four),
+                    rows.four(n.cast_signed(), four),
+                    rows.four(o.cast_signed(), four),
+                    rows.four(p.cast_signed(), four),
+                ])
             }
             #[inline(always)]
             fn to_number(self) -> $Lanes {

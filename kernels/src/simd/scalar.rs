@@ -201,7 +201,8 @@ impl Choice<f32> for usize {
     }
     #[inline(always)]
     fn look_up_four(self, upper: bool, table: &Shared, four: usize) -> [f32; 4] {
-        *table.rows.four((self & 3) + 4 * Self::from(upper), four)
+        let entry = (self & 3) + 4 * Self::from(upper);
+        table.rows.0[entry][four]
     }
     #[inline(always)]
     fn look_up_three(self, table: &[f32; 4]) -> f32 {

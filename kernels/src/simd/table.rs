@@ -82,7 +82,7 @@ pub(super) type Fours<T> = [[T; 4]; 4];
 /// The entries, each four by four numbers. One lane reads a four of one entry, and eight lanes read a four of eight and transpose them.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(16))]
-pub struct Rows([Fours<f32>; ENTRIES]);
+pub struct Rows(pub(super) [Fours<f32>; ENTRIES]);
 
 impl Rows {
     fn new(entries: &Entries<f32>) -> Self {
@@ -94,8 +94,8 @@ impl Rows {
     }
     /// Four numbers of an entry from 0 to 7.
     #[inline(always)]
-    pub(super) fn four(&self, entry: usize, four: usize) -> &[f32; 4] {
-        &self.0[entry & (ENTRIES - 1)][four]
+    pub(super) fn four(&self, entry: i32, four: usize) -> &[f32; 4] {
+        &self.0[entry.cast_unsigned() as usize & (ENTRIES - 1)][four]
     }
 }
 
