@@ -1,5 +1,6 @@
 //! The entry points.
 
+mod hits;
 mod resample;
 
 use crate::check::{Asked, Given, check};
@@ -29,11 +30,13 @@ pub enum Op {
     Path(usize),
     /// Candidates for rays: directions, weights and the choice.
     Resample,
+    /// Hits in one call each, or a column of them, on a material that conserves energy.
+    Hits,
 }
 
 impl Op {
     /// All of them: a path takes 1, 4 or 16 samples per shading point.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Prepare,
         Self::Eval,
         Self::Sample,
@@ -41,6 +44,7 @@ impl Op {
         Self::Path(4),
         Self::Path(16),
         Self::Resample,
+        Self::Hits,
     ];
 }
 
@@ -52,6 +56,7 @@ impl fmt::Display for Op {
             Self::Sample => f.write_str("sample"),
             Self::Path(samples) => write!(f, "path-{samples}"),
             Self::Resample => f.write_str("resample"),
+            Self::Hits => f.write_str("hits"),
         }
     }
 }
@@ -179,6 +184,7 @@ impl<M: Formulas> Of<'_, M> {
             Op::Sample => self.sample(visitor),
             Op::Path(samples) => self.path(visitor, samples),
             Op::Resample => self.resample(visitor),
+            Op::Hits => self.hits(visitor),
         }
     }
 

@@ -81,8 +81,8 @@ impl<'a> HitColumns<'a> {
         self.wo[0].len()
     }
 
+    // Not inlined, as those of results below: they are compiled once, and not in every call of every model.
     /// The columns of the hits and three more, of one length.
-    #[inline]
     pub(crate) fn with(
         &self,
         [x, y, z]: [&'a [f32]; 3],
@@ -97,7 +97,6 @@ impl<'a> HitColumns<'a> {
     }
 
     /// The columns of the hits, of directions and of uniform numbers, of one length.
-    #[inline]
     pub(crate) fn with_both(
         &self,
         wi: [&'a [f32]; 3],
@@ -111,7 +110,6 @@ impl<'a> HitColumns<'a> {
 
 impl<'a> EvalColumns<'a> {
     /// All columns; empty ones where they are left out.
-    #[inline]
     pub(crate) fn columns(
         self,
         expected: usize,
@@ -124,7 +122,6 @@ impl<'a> EvalColumns<'a> {
 
 impl<'a> SampleColumns<'a> {
     /// All columns; empty ones where they are left out.
-    #[inline]
     pub(crate) fn columns(
         self,
         expected: usize,

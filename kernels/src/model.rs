@@ -62,6 +62,11 @@ pub trait Model: Copy {
     /// [`conserving`](Self::conserving) change nothing then.
     const CONSERVES: bool;
 
+    /// Whether [`integrates`](Self::integrates) is implemented.
+    ///
+    /// Provided: no.
+    const INTEGRATES: bool = false;
+
     /// The constants of a material.
     fn material(&self, params: &Self::Params) -> Self::Material<f32>;
 

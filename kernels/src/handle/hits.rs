@@ -4,9 +4,7 @@ use crate::columns::{
     EvalColumns, HitColumns, LengthError, SAMPLE, SAMPLE_OF_BOTH, SampleColumns, VALUE_PDF, WI, XI,
     check_length, in_groups,
 };
-use crate::handle::kernels::{
-    AtHits, EightHits, EightPrepared, HitEvals, HitEvalsSamples, HitRow, HitSamples,
-};
+use crate::handle::kernels::{AtHits, EightHits, HitEvals, HitEvalsSamples, HitRow, HitSamples};
 use crate::model::Model;
 use crate::simd::columns::copy_few;
 use crate::simd::dispatch::clean_upper_halves;
@@ -193,7 +191,7 @@ impl<M: Model> Material<M> {
         mut outputs: [&mut [f32]; N],
     ) {
         clean_upper_halves();
-        if M::integrates::<f32, f32>(&self.constants) > 0.0 {
+        if self.is_integrating() {
             return in_packets::<M, K, I, N>(inputs, &mut outputs, |hits| self.prepare8(hits));
         }
         let row = AtHits::<M, K>::new(&self.constants);
@@ -214,8 +212,7 @@ fn in_packets<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize>(
         let input = inputs.map(|column| packet(column.get(first..).unwrap_or_default()));
         let wo = Vec3x::new(input[0], input[1], input[2]);
         let bsdf = prepare(&Hit::new(wo, input[3]));
-        let row = EightPrepared::<M, K, I, N>::new(&bsdf, &input);
-        let rows = bsdf.level.run(row);
+        let rows = K::of_eight(&bsdf, &input);
         for (lanes, column) in rows.iter().zip(outputs.iter_mut()) {
             copy_few(
                 lanes.as_array(),

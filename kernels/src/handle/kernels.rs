@@ -194,6 +194,9 @@ pub(crate) trait HitRow<M: Model, const I: usize, const N: usize> {
     /// Numbers of each lane at a prepared hit.
     fn at<L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>, input: [L; I]) -> [L; N];
 
+    /// Numbers of each lane at eight prepared hits, by their calls for packets.
+    fn of_eight(bsdf: &Bsdf8<M>, input: &[f32x8; I]) -> [f32x8; N];
+
     /// Numbers of each lane.
     #[inline(always)]
     fn row<L: Lanes, C: Broadcast<L>>(material: &M::Material<C>, input: [L; I]) -> [L; N] {
@@ -213,6 +216,11 @@ impl<M: Model> HitRow<M, 7, 4> for HitEvals {
     ) -> [L; 4] {
         value_pdf(M::eval::<L, C>(prepared, Vec3x::new(x, y, z)))
     }
+
+    #[inline(never)]
+    fn of_eight(bsdf: &Bsdf8<M>, [_, _, _, _, x, y, z]: &[f32x8; 7]) -> [f32x8; 4] {
+        value_pdf(bsdf.eval_pdf8(&Vec3x::new(*x, *y, *z)))
+    }
 }
 
 /// Columns of samples, from three uniform numbers.
@@ -224,6 +232,11 @@ impl<M: Model> HitRow<M, 7, 11> for HitSamples {
         [_, _, _, _, x, y, z]: [L; 7],
     ) -> [L; 11] {
         columns(M::sample::<L, C>(prepared, [x, y, z]))
+    }
+
+    #[inline(never)]
+    fn of_eight(bsdf: &Bsdf8<M>, [_, _, _, _, x, y, z]: &[f32x8; 7]) -> [f32x8; 11] {
+        columns(bsdf.sample8(&[*x, *y, *z]))
     }
 }
 
@@ -239,6 +252,14 @@ impl<M: Model> HitRow<M, 10, 15> for HitEvalsSamples {
         joined(
             value_pdf(eval),
             columns(M::sample::<L, C>(prepared, [x, y, z])),
+        )
+    }
+
+    #[inline]
+    fn of_eight(bsdf: &Bsdf8<M>, [a, b, c, h, u, v, w, x, y, z]: &[f32x8; 10]) -> [f32x8; 15] {
+        joined(
+            HitEvals::of_eight(bsdf, &[*a, *b, *c, *h, *u, *v, *w]),
+            HitSamples::of_eight(bsdf, &[*a, *b, *c, *h, *x, *y, *z]),
         )
     }
 }
@@ -290,37 +311,6 @@ impl<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize> Row<I, N> for
     #[inline(always)]
     fn row<L: Lanes>(self, input: [L; I]) -> [L; N] {
         K::row::<L, f32>(self.material, input)
-    }
-}
-
-/// Eight prepared hits: for materials that integrate their lobes.
-pub(crate) struct EightPrepared<'a, M: Model, K, const I: usize, const N: usize> {
-    prepared: &'a M::Prepared<f32x8>,
-    input: &'a [f32x8; I],
-    columns: PhantomData<K>,
-}
-
-impl<'a, M: Model, K, const I: usize, const N: usize> EightPrepared<'a, M, K, I, N> {
-    #[inline]
-    pub(crate) fn new(bsdf: &'a Bsdf8<M>, input: &'a [f32x8; I]) -> Self {
-        Self {
-            prepared: &bsdf.prepared,
-            input,
-            columns: PhantomData,
-        }
-    }
-}
-
-impl<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize> Kernel
-    for EightPrepared<'_, M, K, I, N>
-{
-    type Output = [f32x8; N];
-    // Beside the integral more registers save nothing.
-    const MANY_REGISTERS: bool = false;
-
-    #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; N] {
-        store_lanes(K::at::<L, f32x8>(self.prepared, lanes_of(self.input)))
     }
 }
 

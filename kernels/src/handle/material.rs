@@ -4,6 +4,7 @@ use super::bsdf::{Bsdf, Bsdf8, unit};
 use super::kernels::Prepare;
 use super::{handle_impls, level_methods};
 use crate::model::Model;
+use crate::simd::dispatch::clean_upper_halves;
 use crate::simd::{LaneStruct, Level, Schedule, Vec3x, f32x8};
 use crate::{Eval, Hit, Hit8, PerLobe, Sample};
 use core::f32::consts::FRAC_PI_2;
@@ -56,7 +57,7 @@ impl<M: Model> Material<M> {
     #[must_use]
     pub fn prepare(&self, hit: impl Into<Hit>) -> Bsdf<M> {
         let hit = hit.into();
-        if M::integrates::<f32, f32>(&self.constants) > 0.0 {
+        if self.is_integrating() {
             return self.prepare_integrated(hit);
         }
         Bsdf {
@@ -79,7 +80,7 @@ impl<M: Model> Material<M> {
     #[must_use]
     pub fn eval_hit(&self, hit: impl Into<Hit>, wi: impl Into<Vec3x<f32>>) -> Eval {
         let (hit, wi) = (hit.into(), wi.into());
-        if M::integrates::<f32, f32>(&self.constants) > 0.0 {
+        if self.is_integrating() {
             return self.prepare_integrated(hit).eval_pdf(wi);
         }
         let prepared = M::prepare_one(&self.constants, hit.alone());
@@ -91,12 +92,19 @@ impl<M: Model> Material<M> {
     #[must_use]
     pub fn sample_hit(&self, hit: impl Into<Hit>, xi: [f32; 3]) -> Option<Sample> {
         let hit = hit.into();
-        if M::integrates::<f32, f32>(&self.constants) > 0.0 {
+        if self.is_integrating() {
             return self.prepare_integrated(hit).sample(xi);
         }
         let prepared = M::prepare_one(&self.constants, hit.alone());
         let xi = [xi[0].alone(), xi[1].alone(), xi[2].alone()];
         Sample::from_lanes(&M::sample::<f32, f32>(&prepared, xi))
+    }
+
+    /// Whether each hit integrates the lobes. By bits: a comparison of floats is legacy SSE in a plain build, which takes 120 ns where
+    /// a host has left the upper halves of the vector registers dirty.
+    #[inline(always)]
+    pub(super) fn is_integrating(&self) -> bool {
+        M::integrates::<f32, f32>(&self.constants).to_bits() != 0
     }
 
     #[cold]
@@ -123,7 +131,7 @@ impl<M: Model> Material<M> {
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
-        if M::integrates::<f32, f32>(&self.constants) > 0.0 {
+        if self.is_integrating() {
             return self.prepare8_at(hits).conserving();
         }
         self.prepare8_at(hits)
@@ -248,6 +256,9 @@ impl<M: Model> Material8<M> {
     /// Lanes that integrate the lobes, if any does.
     #[inline(always)]
     pub(super) fn integrating(&self) -> Option<f32x8> {
+        if M::INTEGRATES {
+            clean_upper_halves();
+        }
         let lanes = M::integrates::<f32x8, f32x8>(&self.constants);
         // By numbers and not by a mask of the CPU: compilers then drop the question for models that never integrate.
         let any = lanes.as_array().iter().any(|lane| *lane > 0.0);

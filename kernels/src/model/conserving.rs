@@ -174,6 +174,7 @@ impl<M: Model> Model for Conserving<M> {
 
     const LOBES: &'static [&'static str] = M::LOBES;
     const CONSERVES: bool = true;
+    const INTEGRATES: bool = !M::CONSERVES;
 
     #[inline]
     fn material(&self, params: &M::Params) -> Self::Material<f32> {

@@ -4,11 +4,13 @@
 //! - `entry run NAME PASSES`: passes over the inputs and nothing else: their cost is the difference of two runs with
 //!   different numbers of passes.
 //! - `entry time NAME SECONDS`: ns per direction, the median of stretches of a millisecond.
+//! - `entry dirty [NAME]`: which packets and slices suffer from dirty upper halves of the vector registers; fails if one does.
 //! - `entry exceptions`: which calls on one lane raise floating-point exceptions; fails if one does.
 //! - `entry keep`: runs nothing; keeps the functions whose size `.ci/sizes.sh` reports in the program.
 //!
 //! A name that ends in `*` selects all with that prefix. `run` prints the number of calls per pass.
 
+mod dirty;
 mod exceptions;
 mod outlined;
 
@@ -20,22 +22,26 @@ use std::time::Instant;
 fn main() -> ExitCode {
     let words: Vec<String> = args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let runner = |name, work| Runner {
+        name,
+        work,
+        found: false,
+        failed: 0,
+    };
     let mut runner = match words[..] {
-        ["list"] => Runner {
-            name: "*",
-            work: Work::List,
-            found: false,
-        },
-        ["run", name, passes] if passes.parse::<u32>().is_ok() => Runner {
-            name,
-            work: Work::Run(passes.parse().unwrap_or(0)),
-            found: false,
-        },
-        ["time", name, seconds] if seconds.parse::<f64>().is_ok() => Runner {
-            name,
-            work: Work::Time(seconds.parse().unwrap_or(0.0)),
-            found: false,
-        },
+        ["list"] => runner("*", Work::List),
+        ["run", name, passes] if passes.parse::<u32>().is_ok() => {
+            runner(name, Work::Run(passes.parse().unwrap_or(0)))
+        }
+        ["time", name, seconds] if seconds.parse::<f64>().is_ok() => {
+            runner(name, Work::Time(seconds.parse().unwrap_or(0.0)))
+        }
+        ["dirty", ..] if !dirty::can_be() => {
+            println!("this CPU has no AVX2: nothing can be dirty");
+            return ExitCode::SUCCESS;
+        }
+        ["dirty"] => runner("*", Work::Dirty),
+        ["dirty", name] => runner(name, Work::Dirty),
         ["keep"] => {
             outlined::keep();
             return ExitCode::SUCCESS;
@@ -43,13 +49,20 @@ fn main() -> ExitCode {
         ["exceptions"] => return ExitCode::from(u8::from(!exceptions::check())),
         _ => {
             eprintln!(
-                "usage: entry keep | entry exceptions | entry list | entry run NAME PASSES | entry time NAME SECONDS"
+                "usage: entry keep | entry exceptions | entry list | entry dirty [NAME] | entry run NAME PASSES | entry time NAME SECONDS"
             );
             return ExitCode::from(2);
         }
     };
     for op in Op::ALL {
         entries::visit(op, &mut runner);
+    }
+    if runner.failed > 0 {
+        println!(
+            "{} entry points take longer when the upper halves are dirty",
+            runner.failed
+        );
+        return ExitCode::FAILURE;
     }
     if runner.found || runner.work == Work::List {
         return ExitCode::SUCCESS;
@@ -63,19 +76,24 @@ enum Work {
     List,
     Run(u32),
     Time(f64),
+    Dirty,
 }
 
 struct Runner<'a> {
     name: &'a str,
     work: Work,
     found: bool,
+    failed: u32,
 }
 
 impl Visitor for Runner<'_> {
     fn wants(&self, name: &Name) -> bool {
-        let name = name.to_string();
+        let (op, level, name) = (name.op, name.level, name.to_string());
         if self.work == Work::List {
             println!("{name}");
+            return false;
+        }
+        if self.work == Work::Dirty && (matches!(op, Op::Path(_)) || matches!(level, "scalar")) {
             return false;
         }
         self.name
@@ -92,6 +110,7 @@ impl Visitor for Runner<'_> {
                 println!("{name} {} {}", task.calls(), task.directions());
             }
             Work::Time(seconds) => println!("{name} {:.3}", time(&mut task, seconds)),
+            Work::Dirty => self.failed += u32::from(!dirty::is_harmless(name, &mut task)),
         }
     }
 }

@@ -1,0 +1,106 @@
+//! The entry points of hits on materials that conserve energy, as hosts are told to make them.
+
+use super::{Of, label};
+use crate::check::{Asked, Given};
+use crate::entries::Visitor;
+use crate::inputs::{DIRECTIONS, packets};
+use crate::task::{Each, PROBE, Slices};
+use glam::Vec3;
+use hairis::columns::{EvalColumns, HitColumns, SampleColumns};
+use hairis::model::Model;
+use hairis::simd::Level;
+use hairis::{Conserving, Material, Material8};
+use hairis_reference::Formulas;
+use hairis_variants::Parameters;
+
+impl<M: Formulas> Of<'_, M> {
+    pub(super) fn hits(&self, visitor: &mut impl Visitor) {
+        if const { M::CONSERVES } {
+            self.hits_of(visitor, &M::MODEL);
+        } else {
+            self.hits_of(visitor, &Conserving(M::MODEL));
+        }
+    }
+
+    /// Hits on the first preset that conserves energy by itself, so that the formulas give the answers. What a call computes does not
+    /// depend on the parameters.
+    fn hits_of<C: Model<Params = M::Params>>(&self, visitor: &mut impl Visitor, model: &C) {
+        let inputs = self.inputs;
+        let presets = M::Params::PRESETS;
+        let dark = presets
+            .iter()
+            .map(|(_, params)| params)
+            .find(|params| Material::new(&M::MODEL, params).max_albedo() <= 1.0)
+            .unwrap_or(&presets[0].1);
+        let material = Material::new(model, dark);
+        let asked = |i: usize, given| Asked {
+            values: dark.values(),
+            wo: inputs.wo[i],
+            given,
+        };
+        let evals = |i| asked(i, Given::Wi(inputs.wi[i]));
+        let samples = |i| asked(i, Given::Xi(inputs.xi[i]));
+        let prepared = |i| asked(i, Given::Wi(PROBE));
+        let pairs = |given: Vec<[f32; 3]>| -> Vec<[f32; 6]> {
+            let row = |(wo, [x, y, z]): (&Vec3, [f32; 3])| [wo.x, wo.y, wo.z, x, y, z];
+            inputs.wo.iter().zip(given).map(row).collect()
+        };
+        let wi: Vec<_> = inputs.wo.iter().copied().zip(inputs.wi.clone()).collect();
+        let xi: Vec<_> = inputs.wo.iter().copied().zip(inputs.xi.clone()).collect();
+        self.show(visitor, "eval_hit", "scalar", evals, || {
+            Each::new(1, wi, move |(wo, wi)| material.eval_hit(*wo, *wi))
+        });
+        self.show(visitor, "sample_hit", "scalar", samples, || {
+            Each::new(1, xi, move |(wo, xi)| material.sample_hit(*wo, *xi))
+        });
+        for level in Level::available() {
+            let material = material.with_level(level);
+            self.show(visitor, "prepare8", label(level), prepared, || {
+                Each::new(8, packets(&inputs.wo), move |wo| material.prepare8(wo))
+            });
+            self.show(visitor, "prepare8-mixed", label(level), prepared, || {
+                let material = Material8::pack([&material; 8]);
+                Each::new(8, packets(&inputs.wo), move |wo| material.prepare8(wo))
+            });
+            self.show(visitor, "eval_hits", label(level), evals, || {
+                let rows = pairs(inputs.wi.iter().map(Vec3::to_array).collect());
+                Slices::new(
+                    DIRECTIONS,
+                    &rows,
+                    move |[x, y, z, u, v, w]: [&[f32]; 6], [r, g, b, pdf]: [&mut [f32]; 4]| {
+                        let hits = HitColumns {
+                            wo: [x, y, z],
+                            h: None,
+                        };
+                        let out = EvalColumns {
+                            value: Some([r, g, b]),
+                            pdf: Some(pdf),
+                        };
+                        material.eval_hits(hits, [u, v, w], out)
+                    },
+                )
+            });
+            self.show(visitor, "sample_hits", label(level), samples, || {
+                Slices::new(
+                    DIRECTIONS,
+                    &pairs(inputs.xi.clone()),
+                    move |[x, y, z, a, b, c]: [&[f32]; 6],
+                          [red, green, blue, pdf, u, v, w, wr, wg, wb, slot]: [&mut [f32]; 11]| {
+                        let hits = HitColumns {
+                            wo: [x, y, z],
+                            h: None,
+                        };
+                        let out = SampleColumns {
+                            wi: Some([u, v, w]),
+                            value: Some([red, green, blue]),
+                            pdf: Some(pdf),
+                            weight: Some([wr, wg, wb]),
+                            slot: Some(slot),
+                        };
+                        material.sample_hits(hits, [a, b, c], out)
+                    },
+                )
+            });
+        }
+    }
+}
