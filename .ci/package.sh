@@ -10,27 +10,19 @@ packages=(hairis hairis-variants hairis-capi hairis-reference hairis-conformance
 
 rm -rf "$target/package"
 cargo package -q --no-verify --allow-dirty --target-dir "$target" "${packages[@]/#/-p}" 2> "$dir/log" || { cat "$dir/log"; exit 1; }
-patches=()
+# A workspace of the archives, with the profiles and the versions of this one.
+sed -e "s/^members = .*/members = [$(printf '"%s",' "${packages[@]}")]/" Cargo.toml > "$dir/Cargo.toml"
+cp Cargo.lock "$dir"
+echo '[patch.crates-io]' >> "$dir/Cargo.toml"
 for package in "${packages[@]}"; do
   tar xzf "$target/package/$package"-[0-9]*.crate -C "$dir"
   mv "$dir/$package"-[0-9]* "$dir/$package"
   for file in LICENSE-MIT LICENSE-APACHE README.md; do
     [ -s "$dir/$package/$file" ] || { echo "FAIL $package: its archive has no $file"; exit 1; }
   done
-  patches+=(--config "patch.crates-io.$package.path='$dir/$package'")
+  echo "$package = { path = '$package' }" >> "$dir/Cargo.toml"
 done
-check() { # check PACKAGE ARGUMENT...: compiles it from its archive, with the others from theirs
-  echo "$1 from its archive: cargo check ${*:2}"
-  (cd "$dir/$1" && cargo check -q "${patches[@]}" --target-dir "$target" "${@:2}" 2>&1 | { grep -v 'Patch.*was not used' || true; })
-}
-# The first three depend on the package of their tests by path alone: their archives have no tests to compile.
-check hairis --lib --all-features
-check hairis-variants --lib --all-features
-check hairis-capi --lib --all-features
-check hairis-reference --lib
-check hairis-conformance --lib
-check hairis-shaders --lib --all-features
-check hairis-gradients --lib --all-features
-check hairis-instruments --lib --all-features
-check hairis-harness --lib --bins --all-features
+# The flags of this workspace, which are looked for from the folder on.
+. .ci/flags
+(cd "$dir" && cargo check -q --workspace --lib --bins --all-features --target-dir "$target")
 echo "${#packages[@]} packages can be published"

@@ -30,8 +30,13 @@ HAIRIS_PLAYWRIGHT=$tools/page
 mkdir -p "$tools"
 HAIRIS_CHROMIUM=$(bash -ec '. .ci/unpack; browser; node --version; "$chromium" --version; echo "$chromium"' | tail -n 1) ||
   { unset HAIRIS_CHROMIUM; echo "node, npm or Chromium is missing: tests on WebGPU are skipped"; }
-# In the profile of the test command, whose packages have more features: these compile in about a minute.
-cargo test -q --locked -p hairis-shaders --features spirv --test main -- --ignored --nocapture
+# The program of the test command, which has compiled it.
+tests=$(cargo test -q --locked --workspace --no-run --message-format=json | python3 -c '
+import json, sys
+for built in map(json.loads, sys.stdin):
+    if built.get("executable") and built["target"]["src_path"].endswith("/variants/shaders/tests/main.rs"):
+        print(built["executable"])')
+(cd variants/shaders && "$tests" --ignored --nocapture)
 # The bounds of the example are those of the driver in software. Mesa asks for XDG_RUNTIME_DIR.
 if [ -n "${VK_DRIVER_FILES:-}" ]; then
   picture=$(mktemp --suffix .png)
