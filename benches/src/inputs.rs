@@ -60,6 +60,19 @@ pub fn arrays(v: &[Vec3]) -> Vec<[f32; 3]> {
     v.iter().map(|v| v.to_array()).collect()
 }
 
+/// The elements of two lists, paired.
+pub(crate) fn pairs<A: Clone, B: Clone>(a: &[A], b: &[B]) -> Vec<(A, B)> {
+    a.iter().cloned().zip(b.iter().cloned()).collect()
+}
+
+/// Rows of both.
+pub(crate) fn joined(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 6]> {
+    a.iter()
+        .zip(b)
+        .map(|([x, y, z], [u, v, w])| [*x, *y, *z, *u, *v, *w])
+        .collect()
+}
+
 /// Eight directions per packet.
 #[must_use]
 pub fn packets(v: &[Vec3]) -> Vec<Vec3x8> {

@@ -51,8 +51,3 @@ impl TimedInputs {
         })
     }
 }
-
-/// The elements of two lists, paired.
-pub(super) fn pairs<A: Clone, B: Clone>(a: &[A], b: &[B]) -> Vec<(A, B)> {
-    a.iter().cloned().zip(b.iter().cloned()).collect()
-}

@@ -1,11 +1,10 @@
 //! Shading points of their own: preparing one, and a few samples of it.
 
-use super::inputs::pairs;
 use super::{
     CONSERVING_HITS, Contenders, EIGHT, EIGHT_AT_ONE, Entrants, HITS, Implementations,
     TIMED_DIRECTIONS, TimedInputs, Truth, truth,
 };
-use crate::inputs::{arrays, packets, xi_packets};
+use crate::inputs::{arrays, joined, packets, pairs, xi_packets};
 use crate::platform::{Platform, platform};
 use crate::task::{Answer, Output, Pass, Several, Slices, task};
 use glam::Vec3;
@@ -174,14 +173,6 @@ fn sample_table<M: Model + 'static>(
             _ => Ok(()),
         }
     })
-}
-
-/// Rows of both.
-fn joined(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 6]> {
-    a.iter()
-        .zip(b)
-        .map(|([x, y, z], [u, v, w])| [*x, *y, *z, *u, *v, *w])
-        .collect()
 }
 
 /// A shading point and an evaluation at it, all on the same hair.

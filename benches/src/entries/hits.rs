@@ -3,9 +3,8 @@
 use super::{Of, label};
 use crate::check::{Asked, Given};
 use crate::entries::Visitor;
-use crate::inputs::{DIRECTIONS, packets};
+use crate::inputs::{DIRECTIONS, arrays, joined, packets, pairs};
 use crate::task::{Each, PROBE, Slices};
-use glam::Vec3;
 use hairis::columns::{EvalColumns, HitColumns, SampleColumns};
 use hairis::model::Model;
 use hairis::simd::Level;
@@ -41,17 +40,16 @@ impl<M: Formulas> Of<'_, M> {
         let evals = |i| asked(i, Given::Wi(inputs.wi[i]));
         let samples = |i| asked(i, Given::Xi(inputs.xi[i]));
         let prepared = |i| asked(i, Given::Wi(PROBE));
-        let pairs = |given: Vec<[f32; 3]>| -> Vec<[f32; 6]> {
-            let row = |(wo, [x, y, z]): (&Vec3, [f32; 3])| [wo.x, wo.y, wo.z, x, y, z];
-            inputs.wo.iter().zip(given).map(row).collect()
-        };
-        let wi: Vec<_> = inputs.wo.iter().copied().zip(inputs.wi.clone()).collect();
-        let xi: Vec<_> = inputs.wo.iter().copied().zip(inputs.xi.clone()).collect();
+        let (wo, wi) = (arrays(&inputs.wo), arrays(&inputs.wi));
         self.show(visitor, "eval_hit", "scalar", evals, || {
-            Each::new(1, wi, move |(wo, wi)| material.eval_hit(*wo, *wi))
+            Each::new(1, pairs(&inputs.wo, &inputs.wi), move |(wo, wi)| {
+                material.eval_hit(*wo, *wi)
+            })
         });
         self.show(visitor, "sample_hit", "scalar", samples, || {
-            Each::new(1, xi, move |(wo, xi)| material.sample_hit(*wo, *xi))
+            Each::new(1, pairs(&inputs.wo, &inputs.xi), move |(wo, xi)| {
+                material.sample_hit(*wo, *xi)
+            })
         });
         for level in Level::available() {
             let material = material.with_level(level);
@@ -63,10 +61,9 @@ impl<M: Formulas> Of<'_, M> {
                 Each::new(8, packets(&inputs.wo), move |wo| material.prepare8(wo))
             });
             self.show(visitor, "eval_hits", label(level), evals, || {
-                let rows = pairs(inputs.wi.iter().map(Vec3::to_array).collect());
                 Slices::new(
                     DIRECTIONS,
-                    &rows,
+                    &joined(&wo, &wi),
                     move |[x, y, z, u, v, w]: [&[f32]; 6], [r, g, b, pdf]: [&mut [f32]; 4]| {
                         let hits = HitColumns {
                             wo: [x, y, z],
@@ -83,7 +80,7 @@ impl<M: Formulas> Of<'_, M> {
             self.show(visitor, "sample_hits", label(level), samples, || {
                 Slices::new(
                     DIRECTIONS,
-                    &pairs(inputs.xi.clone()),
+                    &joined(&wo, &inputs.xi),
                     move |[x, y, z, a, b, c]: [&[f32]; 6],
                           [red, green, blue, pdf, u, v, w, wr, wg, wb, slot]: [&mut [f32]; 11]| {
                         let hits = HitColumns {
