@@ -246,6 +246,10 @@ impl<M: Model> Material8<M> {
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
         let (material, level) = (&self.constants, self.level);
         let kernel = Prepare::<M, f32x8, _> { material, hits };
+        if M::INTEGRATES {
+            // What follows compares floats outside the level.
+            clean_upper_halves();
+        }
         if let Some(lanes) = self.integrating() {
             let prepared = level.run(kernel);
             return Bsdf8 { prepared, level }.conserving_where(lanes);
@@ -253,12 +257,9 @@ impl<M: Model> Material8<M> {
         level.run_into(kernel, |prepared| Bsdf8 { prepared, level })
     }
 
-    /// Lanes that integrate the lobes, if any does.
+    /// Lanes that integrate the lobes, if any does. The caller has cleaned the upper halves of the vector registers.
     #[inline(always)]
     pub(super) fn integrating(&self) -> Option<f32x8> {
-        if M::INTEGRATES {
-            clean_upper_halves();
-        }
         let lanes = M::integrates::<f32x8, f32x8>(&self.constants);
         // By numbers and not by a mask of the CPU: compilers then drop the question for models that never integrate.
         let any = lanes.as_array().iter().any(|lane| *lane > 0.0);
