@@ -1,7 +1,7 @@
 #!/bin/bash
-# Builds the programs that other checks look at, once for all of them, and prints their folder: release.sh [LEVEL].
-# At opt-level 3, the default, `hairis` and `entry`; at "s" and "z" `entry` alone. The same packages each time: features that
-# differ would compile the kernels again.
+# Builds the programs that other checks look at, once for all of them, and prints their folder: release.sh [LEVEL [FEATURES]].
+# At opt-level 3, the default, `hairis` and `entry`; at "s" and "z" `entry` alone, with these features of hairis-benches. The same
+# packages each time: features that differ would compile the kernels again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . .ci/flags
@@ -9,7 +9,7 @@ level=${1:-3}
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")/opt-$level
 case $level in
   3) what='-p hairis-harness -p hairis-benches --bin hairis --bin entry --features hairis-harness/parquet,hairis-harness/png' value=3 ;;
-  *) what='-p hairis-benches --bin entry' value="\"$level\"" ;;
+  *) what="-p hairis-benches --bin entry --features ${2:-default}" value="\"$level\"" ;;
 esac
 cargo build -q --release --locked $what \
   --config "profile.release.opt-level=$value" --target-dir "$target" >&2

@@ -1,6 +1,7 @@
 #!/bin/bash
 # Promise: opt-levels "s" and "z" add no calls to AVX2 and AVX-512 code, and "s" takes at most 1.5 times the time of 3.
-# Reports bytes of code, calls and instructions per call of the entry points.
+# Reports bytes of code, calls and instructions per call of the entry points. The check has three models at "s" and "z", in which is
+# the code of the others; tables and times have all of them.
 #
 #   .ci/sizes.sh           checks; fails above 1.55 times the instructions at "s", which stays below 1.5 times the time
 #                          (preparing, alone or in a call on hits: 1.70, reservoirs: 1.65, Kajiya-Kay and Chiang: 2.0)
@@ -13,10 +14,14 @@ command -v objdump > /dev/null || { apt-get update -qq && apt-get install -qqy b
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 
+case ${1:-} in
+  --write | --time) features=default ;;
+  *) features=three-models ;;
+esac
 # Level 3 comes last: .ci/calls.sh builds it meanwhile, and `built` is its folder below.
-for level in s z 3; do
+for level in "s $features" "z $features" 3; do
   built=$(.ci/release.sh $level)
-  cp "$built/entry" "$dir/entry-$level"
+  cp "$built/entry" "$dir/entry-${level%% *}"
 done
 [ "${1:-}" != --build ] || exit 0
 
@@ -48,14 +53,14 @@ counted=$built/entry.counts
 if [ "$counted" -nt "$built/entry" ]; then cp "$counted" "$dir/3.csv"
 else .ci/instructions.sh --count "$dir/entry-3" > "$dir/3.csv"; fi
 .ci/instructions.sh --count "$dir/entry-s" > "$dir/s.csv"
-paste -d, "$dir/3.csv" "$dir/s.csv" | awk -F, '
-  { ratio = $7 / $3; compared++ }
+join -t, <(sort "$dir/3.csv") <(sort "$dir/s.csv") | awk -F, '
+  { ratio = $6 / $3; compared++ }
   ratio > most { most = ratio; name = $1 }
   # Kajiya-Kay and Chiang, written by lobes, are not tuned for "s": measured 1.99 at most. Preparing goes through memory at "s"
   # since constants are spread field by field, a regression from 1.53: measured 1.68. Reservoirs: measured 1.61.
   function bound(name) { return name ~ /kajiya-kay|chiang/ ? 2.0 : name ~ /^(prepare|hits)\// ? 1.70 : name ~ /reservoir/ ? 1.65 : 1.55 }
   ratio > bound($1) { printf "FAIL %s: %.2f times the instructions at s\n", $1, ratio; bad++ }
-  END { printf "%d entry points, at most %.2f times the instructions at s (%s)\n", compared, most, name; exit bad > 0 }' || failed=1
+  END { printf "%d entry points, at most %.2f times the instructions at s (%s)\n", compared, most, name; exit bad > 0 || compared < 120 }' || failed=1
 
 if [ "${1:-}" = --write ]; then
   { echo "# Bytes of code and calls by opt-level, by .ci/sizes.sh --write with $(rustc -V)."; cat "$dir/sizes.csv"; } > benches/records/sizes.csv

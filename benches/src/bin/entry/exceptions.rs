@@ -7,6 +7,7 @@ use core::hint::black_box;
 use hairis::model::{LobeEval, Model};
 use hairis::simd::{Vec3x, control, set_control};
 use hairis::{Bsdf, Eval, Hit, Material, PerLobe, Sample};
+use hairis_benches::entries::is_compiled;
 use hairis_benches::inputs::{Inputs, materials};
 use hairis_variants::{ModelId, Registered, Visitor};
 
@@ -55,6 +56,9 @@ impl Visitor for OfModel<'_> {
     type Output = bool;
 
     fn visit<M: Registered>(self) -> bool {
+        if const { !is_compiled(ModelId::of::<M>()) } {
+            return true;
+        }
         let names = [
             "prepare",
             "eval_pdf",

@@ -10,7 +10,8 @@ use hairis::{
     Bsdf, Bsdf8, Eval, Eval8, Gaussian, Matched, Material, Material8, Published, Sample, Sample8,
     Vec3x8,
 };
-use hairis_variants::Cauchy;
+use hairis_benches::entries::is_compiled;
+use hairis_variants::{Cauchy, ModelId, Registered};
 
 /// Declares one function per entry point, and `of`, which lists them.
 macro_rules! outlined {
@@ -45,10 +46,17 @@ outlined! {
     }
 }
 
+/// Those of a model whose entry points are compiled.
+fn of_compiled<M: Registered>() {
+    if const { is_compiled(ModelId::of::<M>()) } {
+        of::<M>();
+    }
+}
+
 /// Takes the address of every function, so that none is left out of the program.
 pub(crate) fn keep() {
-    of::<Published<Gaussian>>();
-    of::<Published<Cauchy>>();
-    of::<Matched<Gaussian>>();
-    of::<Matched<Cauchy>>();
+    of_compiled::<Published<Gaussian>>();
+    of_compiled::<Published<Cauchy>>();
+    of_compiled::<Matched<Gaussian>>();
+    of_compiled::<Matched<Cauchy>>();
 }
