@@ -28,21 +28,25 @@ python=$work/venv/bin/python
 "$python" -m pip install -q 'maturin>=1.9,<2' numpy mypy pytest matplotlib jax 'mitsuba==3.9.1' 'nanobind>=2'
 
 part builds
-# The library as it is by default on one core; what Rust answers, and the wheel, on the other. .ci/long.sh builds the library with the
-# feature `every-sampler`.
-CARGO_BUILD_JOBS=1 "$capi/install.sh" "$prefix" > "$work/install.log" 2>&1 &
+# On one core the library as it is by default, and the wheel; meanwhile what Rust answers, and the library that is watched. .ci/long.sh
+# builds the library with the feature `every-sampler`.
+libraries() {
+  "$capi/install.sh" "$prefix"
+  cd variants/python
+  rm -rf "$work/wheels"
+  "$work/venv/bin/maturin" build -q --locked --target-dir "$work/wheel" --out "$work/wheels"
+}
+CARGO_BUILD_JOBS=1 libraries > "$work/libraries.log" 2>&1 &
 libraries=$!
-CARGO_BUILD_JOBS=1 cargo build -q --release --locked --manifest-path .ci/hosts/Cargo.toml --target-dir "$work/answers"
+cargo build -q --release --locked --manifest-path .ci/hosts/Cargo.toml --target-dir "$work/answers"
 "$work/answers/release/hairis-hosts" "$work"
-# Every model, and every access of the library is checked. Not optimised, which does not change a bit and takes a minute to compile.
+# Every model, and every access of the library is checked. Not optimised, which does not change a bit and takes two minutes to compile.
 # RUSTC_BOOTSTRAP for this command alone: the sanitizer is no stable option.
 host=$(rustc -vV | sed -n 's/^host: //p')
-CARGO_BUILD_JOBS=1 RUSTC_BOOTSTRAP=1 RUSTFLAGS="$RUSTFLAGS -Zsanitizer=address" cargo rustc -q --locked -p hairis-capi --profile capi \
+RUSTC_BOOTSTRAP=1 RUSTFLAGS="$RUSTFLAGS -Zsanitizer=address" cargo rustc -q --locked -p hairis-capi --profile capi \
   --config 'profile.capi.lto=false' --config 'profile.capi.opt-level=0' --no-default-features --features every-sampler \
   --crate-type staticlib --target "$host" --target-dir "$work/asan"
-(cd variants/python && rm -rf "$work/wheels" &&
-  "$work/venv/bin/maturin" build -q --locked --target-dir "$work/wheel" --out "$work/wheels")
-wait $libraries || { cat "$work/install.log"; echo "FAIL install.sh"; exit 1; }
+wait $libraries || { cat "$work/libraries.log"; echo "FAIL the library or the wheel"; exit 1; }
 
 part header
 strict=(-Wall -Wextra -pedantic -Werror -I"$prefix/include")
@@ -65,10 +69,6 @@ export HAIRIS_MAY_LACK=1
 "$work/bits" "$work/answers.bin" | tee "$work/bits.log"
 grep -q '; 30 are not in the library' "$work/bits.log" || { echo "FAIL the library has other models"; exit 1; }
 "$work/refusals"
-# A wrong answer is found: the last but one number of the file is changed.
-cp "$work/answers.bin" "$work/wrong.bin"
-printf '\x01' | dd of="$work/wrong.bin" bs=1 seek=$(($(stat -c %s "$work/wrong.bin") - 7)) conv=notrunc status=none
-if "$work/bits" "$work/wrong.bin" > /dev/null 2>&1; then echo "FAIL bits accepts a wrong answer"; exit 1; fi
 
 # What watches memory must report a column that is one number short, in the call that fills it.
 reported() { # reported COMMAND...
@@ -83,6 +83,10 @@ watched=(-fsanitize=address "$work/asan/$host/capi/libhairis_capi.a" -lm)
 build_c "$capi/tests/bits.c" "$work/bits-asan" "${watched[@]}"
 build_c "$capi/tests/refusals.c" "$work/refusals-asan" "${watched[@]}"
 env -u HAIRIS_MAY_LACK "$work/bits-asan" "$work/answers.bin"
+# A wrong answer is found: the last but one number of the file is changed.
+cp "$work/answers.bin" "$work/wrong.bin"
+printf '\x01' | dd of="$work/wrong.bin" bs=1 seek=$(($(stat -c %s "$work/wrong.bin") - 7)) conv=notrunc status=none
+if env -u HAIRIS_MAY_LACK "$work/bits-asan" "$work/wrong.bin" > /dev/null 2>&1; then echo "FAIL bits accepts a wrong answer"; exit 1; fi
 "$work/refusals-asan"
 reported "$work/bits-asan" "$work/answers.bin" short
 
