@@ -9,7 +9,7 @@ level=${1:-3}
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")/opt-$level
 case $level in
   3) what='-p hairis-harness -p hairis-benches --bin hairis --bin entry --features hairis-harness/parquet,hairis-harness/png' value=3 ;;
-  *) what="-p hairis-benches --bin entry --features ${2:-default}" value="\"$level\"" ;;
+  *) what="-p hairis-benches --bin entry ${2:+--features $2}" value="\"$level\"" ;;
 esac
 cargo build -q --release --locked $what \
   --config "profile.release.opt-level=$value" --target-dir "$target" >&2

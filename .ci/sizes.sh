@@ -15,7 +15,7 @@ dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 
 case ${1:-} in
-  --write | --time) features=default ;;
+  --write | --time) features= ;;
   *) features=three-models ;;
 esac
 # Level 3 comes last: .ci/calls.sh builds it meanwhile, and `built` is its folder below.

@@ -46,7 +46,7 @@ outlined! {
     }
 }
 
-/// Those of a model whose entry points are compiled.
+/// Takes the addresses of the functions of a model, if its entry points are compiled.
 fn of_compiled<M: Registered>() {
     if const { is_compiled(ModelId::of::<M>()) } {
         of::<M>();
