@@ -1,7 +1,10 @@
 //! The entry points.
 
 mod hits;
+mod models;
 mod resample;
+
+pub use models::{MODELS, is_compiled};
 
 use crate::check::{Asked, Given, check};
 use crate::inputs::{DIRECTIONS, Inputs, arrays, materials, packets, params, xi_packets};
@@ -15,7 +18,6 @@ use hairis::simd::Level;
 use hairis::{Bsdf, Bsdf8, Material, Material8};
 use hairis_reference::{Formulas, Reference};
 use hairis_variants::{ModelId, Parameters};
-use std::sync::LazyLock;
 
 /// Operation of an entry point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,15 +97,6 @@ pub trait Visitor {
     fn visit<T: Task>(&mut self, name: &Name, task: T);
 }
 
-/// The models that take part, by the names of their entry points: `gaussian`, and `gaussian-matched` for another sampler.
-pub static MODELS: LazyLock<Vec<(String, ModelId)>> = LazyLock::new(|| {
-    let name = |id: ModelId| match id.choice() {
-        Some((_, word)) if !id.is_default() => (format!("{}-{word}", id.name()), id),
-        _ => (id.name().to_owned(), id),
-    };
-    ModelId::ALL.iter().copied().map(name).collect()
-});
-
 /// Name of the scalar baseline, the paper's formulas in `f32`.
 pub const REFERENCE: &str = "reference";
 /// Directions in a short slice: less than a packet.
@@ -117,17 +110,6 @@ pub fn label(level: Level) -> &'static str {
     } else {
         level.name()
     }
-}
-
-/// Whether the entry points of a model are compiled, at compile time.
-#[must_use]
-pub const fn is_compiled(id: ModelId) -> bool {
-    // Both bells, both samplers of the published model, and a model that is written by lobes.
-    !cfg!(feature = "three-models")
-        || matches!(
-            id,
-            ModelId::Gaussian | ModelId::CauchyMatched | ModelId::Chiang
-        )
 }
 
 /// Passes an operation's entry points of all [`MODELS`] that are compiled to `visitor`; the reference comes first. Answers are

@@ -47,7 +47,8 @@ impl<L: Lanes> Angles<L> {
         L::stage("wi: inclination, and azimuth relative to wo");
         let c = L::splat;
         // Alone: on one lane LLVM puts these numbers, of which the rest waits, into vectors with others by shuffles. With them
-        // evaluating the Gaussian model takes 6% to 7% more time, a hit 5% to 10% (AMD family 25 model 1).
+        // evaluating the Gaussian model takes 6% to 7% more time, a hit 5% to 10% (AMD family 25 model 1). Measure again:
+        // `entry time eval/eval_pdf/gaussian/scalar 1`, builds in turns.
         let plane_sq = wi.y.mul_add(wi.y, wi.z * wi.z).alone();
         let cos_theta_i = plane_sq.sqrt();
         // Azimuth relative to wo, folded: tau is the tangent of half of |phi| or of pi - |phi|, at most 1.
