@@ -63,14 +63,14 @@ pub(crate) fn selection<L: Lanes>(energy: [L; 4]) -> ([L; 4], [L; 3], L) {
     let c = L::splat;
     let zero = c(0.0);
     let total = (energy[0] + energy[1]) + (energy[2] + energy[3]);
-    let inv_total = L::select(zero.lt(total), L::quotient(c(1.0), total), zero);
+    let inv_total = L::select_predictable(zero.lt(total), L::quotient(c(1.0), total), zero);
     let p = times(energy, [inv_total; 4]);
     let (two, low) = (c(2.0), p[0] + p[1]);
     let more = [p[1] + p[2] + p[3], p[2] + p[3], p[3]];
     let bounds = [
-        L::select(zero.lt(more[0]), p[0], two),
-        L::select(zero.lt(more[1]), low, two),
-        L::select(zero.lt(more[2]), low + p[2], two),
+        L::select_predictable(zero.lt(more[0]), p[0], two),
+        L::select_predictable(zero.lt(more[1]), low, two),
+        L::select_predictable(zero.lt(more[2]), low + p[2], two),
     ];
     (p, bounds, inv_total)
 }

@@ -110,6 +110,6 @@ pub(crate) fn finish_sample<L: Lanes, C: Broadcast<L>>(
         value: scale3(sum, inv_cos_sq_theta_d, limit),
         pdf: (density * angles.inv_cos_theta_i).min(limit),
         weight: scale3(sum, by, limit),
-        slot: L::select(sound, choice.to_number(), L::splat(-1.0)),
+        slot: L::select_predictable(sound, choice.to_number(), L::splat(-1.0)),
     }
 }

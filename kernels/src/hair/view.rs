@@ -171,9 +171,9 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
     let largest = wo.x.abs().max(wo.z.abs().max(wo.y.abs()));
     let usual = L::and(c(0.25).lt(largest), largest.lt(c(4.0)));
     let none = largest.lt(least);
-    let by = L::select(usual, one, L::quotient(one, largest.max(least)));
+    let by = L::select_predictable(usual, one, L::quotient(one, largest.max(least)));
     let x = wo.x * by;
-    let y = L::select(none, one, wo.y * by);
+    let y = L::select_predictable(none, one, wo.y * by);
     let z = wo.z * by;
     let plane_sq = y.mul_add(y, z * z);
     let len = x.mul_add(x, plane_sq).sqrt();
@@ -182,13 +182,13 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
     let plane = plane_sq.sqrt().min(len);
     // On the axis the azimuth is 0 by convention, and so it is where `plane_sq` is next to denormals and has no digits.
     let off_axis = c(1e-18).lt(plane);
-    let span_plane = L::select(off_axis, plane, one);
+    let span_plane = L::select_predictable(off_axis, plane, one);
     let reciprocal = L::quotient(one, len * span_plane);
     let (half_inv_len, inv_plane) = (c(0.5) * (reciprocal * span_plane), reciprocal * len);
     let [quarter_o, half_rest] = half_atan2_parts(x, plane, len);
     // Products of components this small would underflow; the stated bounds do not cover their last digit.
     let near_axis = plane.lt(c(1e-4));
-    let cos_phi_o = L::select(off_axis, y * inv_plane, one);
+    let cos_phi_o = L::select_predictable(off_axis, y * inv_plane, one);
     let sin_phi_o = z * inv_plane;
 
     L::stage("half the inclination of wo, less the shift of each lobe");
@@ -199,11 +199,11 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
         half_sin_theta_o: (x * half_inv_len).store(),
         half_cos_theta_o: (plane * half_inv_len).store(),
         plane_o: store3([
-            L::select(near_axis, cos_phi_o, y),
-            L::select(near_axis, sin_phi_o, z),
-            L::select(near_axis, one, plane),
+            L::select_predictable(near_axis, cos_phi_o, y),
+            L::select_predictable(near_axis, sin_phi_o, z),
+            L::select_predictable(near_axis, one, plane),
         ]),
-        inv_plane_o: L::select(near_axis, one, inv_plane).store(),
+        inv_plane_o: L::select_predictable(near_axis, one, inv_plane).store(),
         quarter_o: quarter_o.store(),
         shift: store4([r, tt, trt, trt]),
         lobes: lobes.spread::<L>(),

@@ -51,17 +51,18 @@ impl<L: Lanes> Direction<L> {
         let Vec3x { x, y, z } = vector;
         // Scaled first, so that no square overflows or vanishes; one of about unit length keeps its digits.
         let largest = x.abs().max(y.abs().max(z.abs()));
-        let by = L::select(
+        let by = L::select_predictable(
             c(1e12).lt(largest),
             c(1e-25),
-            L::select(largest.lt(c(1e-12)), c(1e25), one),
+            L::select_predictable(largest.lt(c(1e-12)), c(1e25), one),
         );
         let (x, y, z) = (x * by, y * by, z * by);
         let length_sq = x.mul_add(x, y.mul_add(y, z * z));
         let some = c(1e-30).lt(length_sq);
         let unit = (length_sq - 1.0).abs().lt(c(1e-5));
-        let by = L::select(unit, one, L::keep(some, L::quotient(one, length_sq.sqrt())));
-        let (x, y, z) = (x * by, L::select(some, y * by, one), z * by);
+        let by =
+            L::select_predictable(unit, one, L::keep(some, L::quotient(one, length_sq.sqrt())));
+        let (x, y, z) = (x * by, L::select_predictable(some, y * by, one), z * by);
         // Correct the length by its remaining difference from 1: one rounding per component.
         let plane_sq = y.mul_add(y, z * z);
         let off = half - x.mul_add(x, plane_sq) * 0.5;

@@ -350,7 +350,7 @@ impl<M: LobeModel> Model for M {
             value: min3(value, limit),
             pdf: pdf.min(limit),
             weight: min3([value[0] * by, value[1] * by, value[2] * by], limit),
-            slot: L::select(sound, lobe.to_number(), c(-1.0)),
+            slot: L::select_predictable(sound, lobe.to_number(), c(-1.0)),
         }
     }
 

@@ -129,6 +129,13 @@ pub trait Lanes:
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// `yes` where the mask is set, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// [`select`](Self::select) by a mask that is nearly always the same. One lane branches: what follows does not wait for the mask, and
+    /// what is not selected is not computed.
+    #[inline(always)]
+    #[must_use]
+    fn select_predictable(mask: Self::Mask, yes: Self, no: Self) -> Self {
+        Self::select(mask, yes, no)
+    }
     /// `(a, b)` where the mask is set, `(b, a)` elsewhere.
     fn swap(mask: Self::Mask, a: Self, b: Self) -> (Self, Self);
     /// `x` where the mask is set, 0 elsewhere.
