@@ -120,11 +120,11 @@ mod tests {
     }
 
     const BUDGET: Budget = Budget {
-        independent: 4_096,
+        independent: 512,
         correlated: 16,
-        randomisations: 64,
-        mis: 1_024,
-        sweep: 1_024,
+        randomisations: 16,
+        mis: 256,
+        sweep: 256,
         convergence: 16,
         convergence_n: 16,
         quadrature_texels: 0,

@@ -132,6 +132,7 @@ impl Distance<'_> {
     ) -> Result<f64, ParamError> {
         let Self { points, scale, .. } = self;
         let other = points.values(&self.model.material(values)?);
+        let offsets = points.offsets.len() as f64;
         let mut distance = 0.0;
         for (view, other) in other.iter().enumerate() {
             let difference: Vec<[f64; 3]> = (other.iter().zip(&points.look[view]))
@@ -139,16 +140,18 @@ impl Distance<'_> {
                 .collect();
             let (compared, shares) = points.compared(view, &difference, self.norm);
             let slope = |(values, [weight, cos]): (&[f64; 3], &[f64; 2])| {
+                let share = weight / scale.norm;
                 values.map(|x| {
                     let (term, slope) = match self.norm {
                         Norm::L1 | Norm::Blurred => {
-                            let root = x.hypot(scale.smooth);
+                            // Faster than `hypot`; radiance is far from the limits of double precision.
+                            let root = (x * x + scale.smooth * scale.smooth).sqrt();
                             (root - scale.smooth, x / root)
                         }
                         Norm::L2 => (x * x * cos, 2.0 * x * cos),
                     };
-                    distance += weight * term / scale.norm;
-                    weight * slope / scale.norm / points.offsets.len() as f64
+                    distance += share * term;
+                    share * slope / offsets
                 })
             };
             let slopes: Vec<[f64; 3]> = compared.iter().zip(shares.iter()).map(slope).collect();

@@ -34,6 +34,7 @@ fn a_model_fitted_to_itself_returns_its_values_from_every_start() {
         let config = FitConfig {
             norm,
             starts: 21,
+            directions: 256,
             ..FitConfig::default()
         };
         let found = fit(&look, ModelId::Gaussian, &config).expect("legal values");

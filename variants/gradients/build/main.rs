@@ -170,7 +170,7 @@ fn body(
             let place = inputs.read.binary_search(&place).ok()?;
             Some((
                 *row,
-                format!("sums[{place}] = (L::load(&sums[{place}]) + $x).store();\n"),
+                format!("sums[{place}] = (at::<L, _>(sums, {place}) + $x).store();\n"),
             ))
         });
     let outputs = values.iter().zip(INPUTS..);
@@ -184,7 +184,7 @@ fn body(
         let mut text = String::new();
         for place in places {
             for (operand, slot) in chunks.loaded(place) {
-                let kept = format!("L::load(&k[{slot}])");
+                let kept = format!("at::<L, _>(k, {slot})");
                 let kept = if graph.node(operand).is_mask() {
                     format!("L::splat(0.0).lt({kept})")
                 } else {
@@ -306,7 +306,7 @@ impl Slots {
                 self.kinds.push(kind);
                 self.kinds.len() - 1
             });
-        format!("L::load(&c[{place}])")
+        format!("at::<L, _>(c, {place})")
     }
 
     /// Argument of a hit.
@@ -314,7 +314,7 @@ impl Slots {
         if self.is_one_lane {
             format!("v[{place}]")
         } else {
-            format!("L::load(&k[{place}])")
+            format!("at::<L, _>(k, {place})")
         }
     }
 

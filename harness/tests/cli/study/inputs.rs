@@ -1,6 +1,6 @@
 //! Files that a study reads beside its parts: environments and claims; and a standard output that nobody reads.
 
-use super::{CELLS, Run, assert_refused, merge, reference};
+use super::{CELLS, Run, assert_refused, lend, merge, reference};
 use crate::cli::{command, run};
 use hairis_harness::study::output::Study;
 use image::{ImageFormat, Rgb32FImage};
@@ -178,6 +178,7 @@ fn claims_of_another_run_stay_out_of_the_report() {
     ] {
         let dir = TempDir::new().unwrap();
         fs::write(dir.path().join("claims.json"), &text).unwrap();
+        lend(reference(), dir.path());
         let run = merge(dir.path(), &[reference()]);
         assert_eq!(run.code, Some(0), "{text}: {:?}", run.err);
         let page = fs::read_to_string(dir.path().join("report.html")).unwrap();
@@ -201,6 +202,7 @@ fn claims_of_another_run_stay_out_of_the_report() {
 #[test]
 fn a_reader_that_leaves_is_told_where_the_tables_are() {
     let dir = TempDir::new().unwrap();
+    lend(reference(), dir.path());
     let args = [
         "merge",
         dir.path().to_str().unwrap(),

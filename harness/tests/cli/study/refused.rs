@@ -1,6 +1,6 @@
 //! Refusals of a study: flags, and files that belong to another one.
 
-use super::{WHOLE, assert_refused, merge, reference, study};
+use super::{WHOLE, assert_refused, lend, merge, reference, study};
 use crate::cli::run;
 use hairis_harness::study::part;
 use std::fs;
@@ -161,6 +161,7 @@ fn damage_before_the_last_line_is_refused() {
     with(4, "");
     let text = fs::read_to_string(&path).unwrap().replace("\n\n", "\n");
     fs::write(&path, text).unwrap();
+    lend(reference(), dir.path());
     assert_eq!(
         study(dir.path(), "2", &[]).code,
         Some(0),
