@@ -39,6 +39,9 @@ fn merge(out: &Path, parts: &[&Path]) -> Run {
     command(&args).stdin(Stdio::null()).output().unwrap().into()
 }
 
+/// Folder of the figures that a run has kept.
+const FIGURES: &str = "kept";
+
 /// Runs a study twice. At first its table cannot be written: its figures stay, and are copied to the folder [`FIGURES`].
 fn study_and_keep(dir: &Path, threads: &str, more: &[&str]) -> Run {
     let taken = dir.join("study.csv");
@@ -47,27 +50,22 @@ fn study_and_keep(dir: &Path, threads: &str, more: &[&str]) -> Run {
     assert_eq!(refused.code, Some(2), "{:?}", refused.err);
     let last = refused.err.last().unwrap();
     assert!(last.contains("study.csv"), "{last}");
-    fs::create_dir(dir.join(FIGURES)).unwrap();
-    for file in fs::read_dir(dir).unwrap().map(Result::unwrap) {
-        if file.path().extension().is_some_and(|end| end == "part") {
-            fs::copy(file.path(), dir.join(FIGURES).join(file.file_name())).unwrap();
-        }
-    }
+    copy_figures(dir, &dir.join(FIGURES));
     fs::remove_dir(taken).unwrap();
     study(dir, threads, more)
 }
 
-/// Folder of the figures that a run has kept.
-const FIGURES: &str = "kept";
-
-/// Copies the figures that a run in `from` has kept: one in `to` goes on from them. Finding them takes most of a short run.
+/// Lends the figures that a run in `from` has kept: one in `to` goes on from them. Finding them takes most of a short run.
 fn lend(from: &Path, to: &Path) {
+    copy_figures(&from.join(FIGURES), to);
+}
+
+fn copy_figures(from: &Path, to: &Path) {
     fs::create_dir_all(to).unwrap();
-    for file in fs::read_dir(from.join(FIGURES))
-        .unwrap()
-        .map(Result::unwrap)
-    {
-        fs::copy(file.path(), to.join(file.file_name())).unwrap();
+    for file in fs::read_dir(from).unwrap().map(Result::unwrap) {
+        if file.path().extension().is_some_and(|end| end == "part") {
+            fs::copy(file.path(), to.join(file.file_name())).unwrap();
+        }
     }
 }
 
