@@ -9,10 +9,13 @@ use glam::Vec3;
 use hairis::columns::{EvalColumns, HitColumns, MaterialTable, SampleColumns, in_groups};
 use hairis::model::Model;
 use hairis::simd::Level;
-use hairis::{Conserving, Gaussian, HairParams, Matched, Material, Material8, Published};
+use hairis::{Conserving, Gaussian, Matched, Material, Material8, Published};
 use hairis_benches::inputs::{Column, DIRECTIONS, Inputs, arrays, packets};
 use hairis_benches::{cpu, turns};
-use hairis_variants::Cauchy;
+use hairis_variants::{AllCauchy, Cauchy, Parameters, Registered};
+
+/// Presets of hair.
+const PRESETS: usize = 6;
 
 fn main() {
     let turns = turns::turns();
@@ -25,10 +28,10 @@ fn main() {
         turns,
         inputs: &inputs,
     };
-    run("gaussian").all(Published(Gaussian));
-    run("cauchy").all(Cauchy::PAPER.model());
-    run("gaussian-matched").all(Matched::new(Gaussian));
-    run("cauchy-matched").all(Cauchy::PAPER.matched());
+    run("gaussian").all::<Published<Gaussian>>();
+    run("cauchy").all::<AllCauchy>();
+    run("gaussian-matched").all::<Matched<Gaussian>>();
+    run("cauchy-matched").all::<Matched<Cauchy>>();
 }
 
 /// Keeps a result that nothing reads, where it is: eight prepared hits have up to 7 kB.
@@ -120,8 +123,10 @@ impl Run<'_> {
         println!("{model},{call},{level},{ours:.2},{base:.2},{ratio:.3}");
     }
 
-    fn all<M: Model<Params = HairParams>>(self, model: M) {
-        let hair = HairParams::blond();
+    fn all<M: Registered>(self) {
+        let model = M::MODEL;
+        // Everyday hair: blond.
+        let hair = M::Params::PRESETS[1].1;
         let raw = Material::new(&model, &hair);
         let fit = Material::new(&Conserving(model), &hair);
         self.pair(
@@ -139,7 +144,7 @@ impl Run<'_> {
         for level in Level::available() {
             self.slices(level, &raw.with_level(level), &fit.with_level(level));
             self.packets(level, &raw.with_level(level), &fit.with_level(level));
-            self.mixed::<M>(level, model);
+            self.mixed::<M>(level);
         }
     }
 
@@ -257,11 +262,12 @@ impl Run<'_> {
     }
 
     /// Slices of hits on the presets, in any order.
-    fn mixed<M: Model<Params = HairParams>>(self, level: Level, model: M) {
-        let presets = HairParams::presets().map(|(_, params)| params);
-        let raw = presets.map(|params| Material::new(&model, &params).with_level(level));
-        let fit =
-            presets.map(|params| Material::new(&Conserving(model), &params).with_level(level));
+    fn mixed<M: Registered>(self, level: Level) {
+        let presets = M::Params::PRESETS;
+        let raw: [Material<M>; PRESETS] =
+            from_fn(|i| Material::new(&M::MODEL, &presets[i].1).with_level(level));
+        let fit: [Material<Conserving<M>>; PRESETS] =
+            from_fn(|i| Material::new(&Conserving(M::MODEL), &presets[i].1).with_level(level));
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -271,7 +277,7 @@ impl Run<'_> {
             .inputs
             .xi
             .iter()
-            .map(|xi| (xi[0] * 6.0) as u32)
+            .map(|xi| (xi[0] * PRESETS as f32) as u32)
             .collect();
         let references: Vec<_> = raw.iter().collect();
         let by_reference = |columns: &mut Columns| {
@@ -311,7 +317,7 @@ impl Run<'_> {
             index: &index,
         };
         // Sixty-four materials by turns: two hits of each in a chunk.
-        let many: Vec<_> = (0..64).map(|i| raw[i % 6]).collect();
+        let many: Vec<_> = (0..64).map(|i| raw[i % PRESETS]).collect();
         let turns: Vec<u32> = (0..64).cycle().take(index.len()).collect();
         let turns = MaterialTable {
             materials: &many,
