@@ -4,76 +4,62 @@ use crate::support::{Case, case_count, differing, every_model, fusing_level};
 use hairis_shaders::{Call, Program, Rounding, Target};
 use hairis_variants::{ModelId, Registered, Visitor};
 
-#[derive(Clone, Copy)]
-struct OneLane;
-
-impl Visitor for OneLane {
-    type Output = ();
-
-    fn visit<M: Registered>(self) {
-        let program = Program::of::<M>(Target::Exact);
-        let cases = Case::<M>::many(case_count(2048), 39);
-        for call in Call::ALL {
-            let function = program.function(call);
-            let (mut got, mut expected) = (Vec::new(), Vec::new());
-            for case in &cases {
-                got.extend(function.run(&case.arguments(call), Rounding::Once));
-                expected.push(case.results(call));
-            }
-            if call == Call::EvalHit {
-                let black = expected
-                    .iter()
-                    .filter(|results| **results == [0.0; 4])
-                    .count();
-                let share = 16 * black / cases.len();
-                assert!(
-                    (1..10).contains(&share),
-                    "{black} of {} cases are black",
-                    cases.len()
-                );
-            }
-            let count = differing(function, &got, &expected);
-            let name = function.name();
-            assert_eq!(count, 0, "{} {name}: cases that differ", program.name());
+fn check_one_lane<M: Registered>() {
+    let program = Program::of::<M>(Target::Exact);
+    let cases = Case::<M>::many(case_count(2048), 39);
+    for call in Call::ALL {
+        let function = program.function(call);
+        let (mut got, mut expected) = (Vec::new(), Vec::new());
+        for case in &cases {
+            got.extend(function.run(&case.arguments(call), Rounding::Once));
+            expected.push(case.results(call));
         }
+        if call == Call::EvalHit {
+            let black = expected
+                .iter()
+                .filter(|results| **results == [0.0; 4])
+                .count();
+            let share = 16 * black / cases.len();
+            assert!(
+                (1..10).contains(&share),
+                "{black} of {} cases are black",
+                cases.len()
+            );
+        }
+        let count = differing(function, &got, &expected);
+        let name = function.name();
+        assert_eq!(count, 0, "{} {name}: cases that differ", program.name());
     }
 }
 
 #[test]
 fn graphs_have_the_bits_of_one_lane() {
-    every_model(OneLane);
+    every_model!(check_one_lane);
 }
 
-#[derive(Clone, Copy)]
-struct FusingLevel;
-
-impl Visitor for FusingLevel {
-    type Output = ();
-
-    fn visit<M: Registered>(self) {
-        let Some(level) = fusing_level() else {
-            return println!("this CPU has no level that fuses");
-        };
-        let program = Program::of::<M>(Target::Fused);
-        let cases = Case::<M>::many(case_count(2048), 40);
-        let function = program.function(Call::EvalSampleHit);
-        let (eights, _) = cases.as_chunks::<8>();
-        let (mut got, mut expected) = (Vec::new(), Vec::new());
-        for eight in eights {
-            expected.extend(Case::results8(eight, level));
-            for case in eight {
-                let arguments = case.arguments(Call::EvalSampleHit);
-                got.extend(function.run(&arguments, Rounding::Once));
-            }
+fn check_fusing_level<M: Registered>() {
+    let Some(level) = fusing_level() else {
+        return println!("this CPU has no level that fuses");
+    };
+    let program = Program::of::<M>(Target::Fused);
+    let cases = Case::<M>::many(case_count(2048), 40);
+    let function = program.function(Call::EvalSampleHit);
+    let (eights, _) = cases.as_chunks::<8>();
+    let (mut got, mut expected) = (Vec::new(), Vec::new());
+    for eight in eights {
+        expected.extend(Case::results8(eight, level));
+        for case in eight {
+            let arguments = case.arguments(Call::EvalSampleHit);
+            got.extend(function.run(&arguments, Rounding::Once));
         }
-        let count = differing(function, &got, &expected);
-        assert_eq!(count, 0, "{}: cases that differ", program.name());
     }
+    let count = differing(function, &got, &expected);
+    assert_eq!(count, 0, "{}: cases that differ", program.name());
 }
 
 #[test]
 fn fused_graphs_have_the_bits_of_a_level_that_fuses() {
-    every_model(FusingLevel);
+    every_model!(check_fusing_level);
 }
 
 /// `only` leaves the bits of what it keeps, for fewer operations.

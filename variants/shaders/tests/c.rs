@@ -1,7 +1,9 @@
 //! The header compiles without warnings as C and C++, and has the bits of one lane.
 
 use crate::gradients::Weighted;
-use crate::support::{Case, case_count, differing, every_model, fusing_level, same};
+use crate::support::{
+    Case, case_count, differing, every_model, fusing_level, same, visit_every_model,
+};
 use hairis_shaders::{Call, Function, Language, Program, Rounding, Target, driver, print};
 use hairis_variants::{KajiyaKay, Parameters, Registered, Visitor};
 use std::fs;
@@ -142,7 +144,7 @@ impl Visitor for Bits {
 
 fn bits(compiler: &'static str, flags: &'static [&'static str]) {
     if exists(compiler) {
-        every_model(Bits { compiler, flags });
+        visit_every_model(Bits { compiler, flags });
     }
 }
 
@@ -180,32 +182,25 @@ fn cpp_has_the_bits_of_one_lane() {
     }
 }
 
-#[derive(Clone, Copy)]
-struct Gradients;
-
-impl Visitor for Gradients {
-    type Output = ();
-
-    fn visit<M: Registered>(self) {
-        let mut program = Program::of::<M>(Target::Exact);
-        let cases = Weighted::both::<M>(&mut program);
-        let Some((_dir, binary)) = compiled(&program) else {
-            return;
-        };
-        for cases in &cases {
-            let gradient = &cases.gradient;
-            let name = format!("{} {} in C", program.name(), gradient.name());
-            let got = run(&binary, gradient.name(), &cases.all.concat());
-            cases.check_bits(&got, Rounding::Once, |x| x, &name);
-            cases.check(&got, &name);
-        }
+fn check_gradients<M: Registered>() {
+    let mut program = Program::of::<M>(Target::Exact);
+    let cases = Weighted::both::<M>(&mut program);
+    let Some((_dir, binary)) = compiled(&program) else {
+        return;
+    };
+    for cases in &cases {
+        let gradient = &cases.gradient;
+        let name = format!("{} {} in C", program.name(), gradient.name());
+        let got = run(&binary, gradient.name(), &cases.all.concat());
+        cases.check_bits(&got, Rounding::Once, |x| x, &name);
+        cases.check(&got, &name);
     }
 }
 
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn gradients_in_c_have_the_bits_of_the_graph() {
-    every_model(Gradients);
+    every_model!(check_gradients);
 }
 
 /// The control: what contraction does is found.

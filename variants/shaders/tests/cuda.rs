@@ -2,7 +2,7 @@
 
 use crate::c::{compile, exists, run, source};
 use crate::gradients::Weighted;
-use crate::support::{Case, Tally, case_count, every_model, fusing_level, unsigned};
+use crate::support::{Case, Tally, case_count, fusing_level, unsigned, visit_every_model};
 use crate::vulkan::Doubles;
 use hairis_shaders::{Call, Function, Program, Rounding, Target};
 use hairis_variants::{Registered, Visitor};
@@ -28,7 +28,7 @@ pub(crate) fn has_gpu() -> bool {
 
 fn every_model_on_a_gpu<V: Visitor + Copy>(visitor: V) {
     if has_gpu() {
-        every_model(visitor);
+        visit_every_model(visitor);
     }
 }
 

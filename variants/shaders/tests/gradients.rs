@@ -1,6 +1,6 @@
 //! Gradients against differences in double precision, and at the edges.
 
-use crate::support::{Case, Random, differing, every_model, same};
+use crate::support::{Case, Random, differing, every_model, same, visit_every_model};
 use hairis_shaders::{Call, Function, Program, Rounding, Target};
 use hairis_variants::{Registered, Visitor};
 
@@ -144,46 +144,39 @@ impl Visitor for Differences {
 
 #[test]
 fn gradients_of_materials_are_those_of_differences() {
-    every_model(Differences(Call::Material));
+    visit_every_model(Differences(Call::Material));
 }
 
 #[test]
 fn gradients_are_those_of_differences() {
-    every_model(Differences(Call::EvalHit));
+    visit_every_model(Differences(Call::EvalHit));
 }
 
 #[test]
 fn gradients_of_a_shading_point_are_those_of_differences() {
-    every_model(Differences(Call::Eval));
+    visit_every_model(Differences(Call::Eval));
 }
 
-#[derive(Clone, Copy)]
-struct Finite;
-
-impl Visitor for Finite {
-    type Output = ();
-
-    fn visit<M: Registered>(self) {
-        for target in [Target::Exact, Target::Fused, Target::GpuNative] {
-            let program = Program::of::<M>(target);
-            for call in [Call::EvalHit, Call::SampleHit] {
-                let function = program.function(call);
-                let gradient = function.gradient();
-                let weights = vec![1.0; function.output().len()];
-                for case in Case::<M>::many(512, 48) {
-                    let is_unit = |x: [f32; 3]| {
-                        let square: f32 = x.iter().map(|x| x * x).sum();
-                        (square - 1.0).abs() < 1e-3
-                    };
-                    let is_uniform = case.xi.iter().all(|xi| (0.0..1.0).contains(xi));
-                    if !is_unit(case.wo) || !is_unit(case.wi) || case.h.is_nan() || !is_uniform {
-                        continue;
-                    }
-                    let inputs = [&case.arguments(call)[..], &weights].concat();
-                    let got = gradient.run(&inputs, Rounding::Once);
-                    let name = format!("{} {} {target:?}", program.name(), function.name());
-                    assert!(got.iter().all(|x| x.is_finite()), "{name}: {case}: {got:?}");
+fn check_finite<M: Registered>() {
+    for target in [Target::Exact, Target::Fused, Target::GpuNative] {
+        let program = Program::of::<M>(target);
+        for call in [Call::EvalHit, Call::SampleHit] {
+            let function = program.function(call);
+            let gradient = function.gradient();
+            let weights = vec![1.0; function.output().len()];
+            for case in Case::<M>::many(512, 48) {
+                let is_unit = |x: [f32; 3]| {
+                    let square: f32 = x.iter().map(|x| x * x).sum();
+                    (square - 1.0).abs() < 1e-3
+                };
+                let is_uniform = case.xi.iter().all(|xi| (0.0..1.0).contains(xi));
+                if !is_unit(case.wo) || !is_unit(case.wi) || case.h.is_nan() || !is_uniform {
+                    continue;
                 }
+                let inputs = [&case.arguments(call)[..], &weights].concat();
+                let got = gradient.run(&inputs, Rounding::Once);
+                let name = format!("{} {} {target:?}", program.name(), function.name());
+                assert!(got.iter().all(|x| x.is_finite()), "{name}: {case}: {got:?}");
             }
         }
     }
@@ -191,5 +184,5 @@ impl Visitor for Finite {
 
 #[test]
 fn gradients_are_finite_at_the_edges() {
-    every_model(Finite);
+    every_model!(check_finite);
 }

@@ -2,7 +2,7 @@
 
 use crate::support::{Random, every_model};
 use hairis_shaders::{Call, Function, Language, Program, Target, driver, print, spirv};
-use hairis_variants::{Registered, Visitor};
+use hairis_variants::Registered;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -39,26 +39,19 @@ pub(crate) fn tool(name: &str, arguments: &[&str]) -> Option<Result<(), String>>
     })
 }
 
-#[derive(Clone, Copy)]
-struct Wgsl;
-
-impl Visitor for Wgsl {
-    type Output = ();
-
-    fn visit<M: Registered>(self) {
-        for target in [Target::Exact, Target::Gpu, Target::GpuNative] {
-            let program = with_gradients::<M>(target);
-            let source = print(&program, Language::Wgsl) + &driver(&program, Language::Wgsl);
-            if let Err(error) = spirv::translate(&source) {
-                panic!("{} {target:?}: {error}", program.name());
-            }
+fn check_wgsl<M: Registered>() {
+    for target in [Target::Exact, Target::Gpu, Target::GpuNative] {
+        let program = with_gradients::<M>(target);
+        let source = print(&program, Language::Wgsl) + &driver(&program, Language::Wgsl);
+        if let Err(error) = spirv::translate(&source) {
+            panic!("{} {target:?}: {error}", program.name());
         }
     }
 }
 
 #[test]
 fn naga_accepts_wgsl() {
-    every_model(Wgsl);
+    every_model!(check_wgsl);
 }
 
 /// The last function of a program in GLSL, as SPIR-V.
@@ -70,6 +63,31 @@ pub(crate) fn compile_glsl(program: &Program, dir: &Path) -> Option<PathBuf> {
     let said = tool("glslangValidator", &arguments)?;
     said.unwrap_or_else(|error| panic!("{}: {error}", program.name()));
     Some(out)
+}
+
+/// A fragment shader of ES compiles, and computes in 32 bits.
+fn check_fragment_shader(program: &Program, dir: &Path) {
+    let file = dir.join("main.frag");
+    let source = print(program, Language::Glsl);
+    let main = "layout(location = 0) out vec4 color;\nvoid main() { color = vec4(1.0); }\n";
+    fs::write(&file, format!("#version 320 es\n{source}{main}")).expect("the folder is ours");
+    let Ok(tree) = Command::new("glslangValidator")
+        .arg("-i")
+        .arg(&file)
+        .output()
+    else {
+        return;
+    };
+    let tree = String::from_utf8_lossy(&tree.stdout);
+    let half = ["ERROR", "mediump", "lowp"]
+        .into_iter()
+        .find(|word| tree.contains(word));
+    let lines = || {
+        tree.lines()
+            .filter(|line| half.is_some_and(|word| line.contains(word)))
+    };
+    assert!(half.is_none(), "{}: {:?}", program.name(), lines().next());
+    assert!(tree.contains("highp"), "{}: {tree}", program.name());
 }
 
 /// A shader of HLSL whose entry point calls the last function with numbers from a buffer.
@@ -99,29 +117,23 @@ pub(crate) fn compile_hlsl(program: &Program, dir: &Path) -> Option<PathBuf> {
     Some(out)
 }
 
-#[derive(Clone, Copy)]
-struct Glslang;
-
-impl Visitor for Glslang {
-    type Output = ();
-
-    fn visit<M: Registered>(self) {
-        let dir = TempDir::new().expect("a folder for shaders");
-        let program = with_gradients::<M>(Target::Gpu);
-        let Some(compiled) = compile_glsl(&program, dir.path()) else {
-            return;
-        };
-        if let Some(Err(error)) = tool("spirv-val", &[&compiled.to_string_lossy()]) {
-            panic!("{} in GLSL: {error}", program.name());
-        }
-        compile_hlsl(&program, dir.path());
-        for program in [program, with_gradients::<M>(Target::Exact)] {
-            let module = spirv::module(&program).expect("naga accepts it");
-            let file = dir.path().join("module.spv");
-            write_words(&file, &module);
-            if let Some(Err(error)) = tool("spirv-val", &[&file.to_string_lossy()]) {
-                panic!("{} in SPIR-V: {error}", program.name());
-            }
+fn check_glslang<M: Registered>() {
+    let dir = TempDir::new().expect("a folder for shaders");
+    let program = with_gradients::<M>(Target::Gpu);
+    let Some(compiled) = compile_glsl(&program, dir.path()) else {
+        return;
+    };
+    if let Some(Err(error)) = tool("spirv-val", &[&compiled.to_string_lossy()]) {
+        panic!("{} in GLSL: {error}", program.name());
+    }
+    compile_hlsl(&program, dir.path());
+    check_fragment_shader(&program, dir.path());
+    for program in [program, with_gradients::<M>(Target::Exact)] {
+        let module = spirv::module(&program).expect("naga accepts it");
+        let file = dir.path().join("module.spv");
+        write_words(&file, &module);
+        if let Some(Err(error)) = tool("spirv-val", &[&file.to_string_lossy()]) {
+            panic!("{} in SPIR-V: {error}", program.name());
         }
     }
 }
@@ -129,65 +141,58 @@ impl Visitor for Glslang {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn glslang_accepts_glsl_and_hlsl() {
-    every_model(Glslang);
+    every_model!(check_glslang);
 }
 
-#[derive(Clone, Copy)]
-struct OpenCl;
-
-impl Visitor for OpenCl {
-    type Output = ();
-
-    fn visit<M: Registered>(self) {
-        let program = Program::of::<M>(Target::Exact);
-        let name = program.name();
-        let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
-        let capitals: String = name.split('_').map(capital).collect();
-        // Instructions of the processor: without a library of OpenCL the two functions would be calls.
-        let source = format!(
-            "#ifdef __NVPTX__\n#define sqrt __nvvm_sqrt_rn_f\n#define fabs __builtin_fabsf\n#endif\n{}\n\
-             __kernel void shade(__global const Hairis{capitals}Params *params, __global const float *x,\n    \
-             __global Hairis{capitals}Eval *eval, __global Hairis{capitals}Sample *sample) {{\n    \
-             const Hairis{capitals}Material m = hairis_{name}_material(*params);\n    \
-             const HairisVec3 wo = hairis_vec3(x[0], x[1], x[2]), wi = hairis_vec3(x[4], x[5], x[6]);\n    \
-             *eval = hairis_{name}_eval_hit(m, wo, x[3], wi);\n    \
-             *sample = hairis_{name}_sample_hit(m, wo, x[3], wi);\n}}\n",
-            print(&program, Language::C)
-        );
-        let dir = TempDir::new().expect("a folder for shaders");
-        let [file, out] = ["main.cl", "out"].map(|name| dir.path().join(name));
-        fs::write(&file, source).expect("the folder is ours");
-        let [file, out] = [file, out].map(|path| path.to_string_lossy().into_owned());
-        let compile = |target: &[&str]| {
-            let usual = [
-                "-x",
-                "cl",
-                "-cl-std=CL1.2",
-                "-O2",
-                "-ffp-contract=off",
-                "-S",
-            ];
-            let builtin = [
-                "-Xclang",
-                "-finclude-default-header",
-                "-Wall",
-                "-Wextra",
-                "-Werror",
-            ];
-            let files = [&file, "-o", &out];
-            let said = tool("clang", &[&usual[..], &builtin, target, &files].concat())?;
-            said.unwrap_or_else(|error| panic!("{name} for {target:?}: {error}"));
-            Some(fs::read_to_string(&out).expect("the compiler wrote it"))
-        };
-        compile(&["-target", "spir64", "-emit-llvm"]);
-        if let Some(ptx) = compile(&["-target", "nvptx64-nvidia-nvcl"]) {
-            assert!(ptx.contains("sqrt.rn.f32"), "{name}: its square roots");
-            for word in ["bra", "call", "fma.rn"] {
-                let mut lines = ptx.lines().filter(|line| !line.contains("//"));
-                let line =
-                    lines.find(|line| line.split_whitespace().any(|part| part.starts_with(word)));
-                assert_eq!(line, None, "{name}: PTX with {word}");
-            }
+fn check_opencl<M: Registered>() {
+    let program = Program::of::<M>(Target::Exact);
+    let name = program.name();
+    let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
+    let capitals: String = name.split('_').map(capital).collect();
+    // Instructions of the processor: without a library of OpenCL the two functions would be calls.
+    let source = format!(
+        "#ifdef __NVPTX__\n#define sqrt __nvvm_sqrt_rn_f\n#define fabs __builtin_fabsf\n#endif\n{}\n\
+         __kernel void shade(__global const Hairis{capitals}Params *params, __global const float *x,\n    \
+         __global Hairis{capitals}Eval *eval, __global Hairis{capitals}Sample *sample) {{\n    \
+         const Hairis{capitals}Material m = hairis_{name}_material(*params);\n    \
+         const HairisVec3 wo = hairis_vec3(x[0], x[1], x[2]), wi = hairis_vec3(x[4], x[5], x[6]);\n    \
+         *eval = hairis_{name}_eval_hit(m, wo, x[3], wi);\n    \
+         *sample = hairis_{name}_sample_hit(m, wo, x[3], wi);\n}}\n",
+        print(&program, Language::C)
+    );
+    let dir = TempDir::new().expect("a folder for shaders");
+    let [file, out] = ["main.cl", "out"].map(|name| dir.path().join(name));
+    fs::write(&file, source).expect("the folder is ours");
+    let [file, out] = [file, out].map(|path| path.to_string_lossy().into_owned());
+    let compile = |target: &[&str]| {
+        let usual = [
+            "-x",
+            "cl",
+            "-cl-std=CL1.2",
+            "-O2",
+            "-ffp-contract=off",
+            "-S",
+        ];
+        let builtin = [
+            "-Xclang",
+            "-finclude-default-header",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+        ];
+        let files = [&file, "-o", &out];
+        let said = tool("clang", &[&usual[..], &builtin, target, &files].concat())?;
+        said.unwrap_or_else(|error| panic!("{name} for {target:?}: {error}"));
+        Some(fs::read_to_string(&out).expect("the compiler wrote it"))
+    };
+    compile(&["-target", "spir64", "-emit-llvm"]);
+    if let Some(ptx) = compile(&["-target", "nvptx64-nvidia-nvcl"]) {
+        assert!(ptx.contains("sqrt.rn.f32"), "{name}: its square roots");
+        for word in ["bra", "call", "fma.rn"] {
+            let mut lines = ptx.lines().filter(|line| !line.contains("//"));
+            let line =
+                lines.find(|line| line.split_whitespace().any(|part| part.starts_with(word)));
+            assert_eq!(line, None, "{name}: PTX with {word}");
         }
     }
 }
@@ -196,80 +201,73 @@ impl Visitor for OpenCl {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn clang_compiles_opencl_and_ptx() {
-    every_model(OpenCl);
+    every_model!(check_opencl);
 }
 
-#[derive(Clone, Copy)]
-struct Traps;
-
-impl Visitor for Traps {
-    type Output = ();
-
-    fn visit<M: Registered>(self) {
-        for target in [Target::Exact, Target::Fused, Target::Gpu, Target::GpuNative] {
-            let program = with_gradients::<M>(target);
-            let [c, wgsl, glsl, hlsl, msl] =
-                Language::ALL.map(|language| print(&program, language));
-            // Sums that round to an integer.
-            for text in [&wgsl, &msl] {
-                let magic = ["8388608.0", "8388723.0", "8388735.0"];
-                let is_magic = |line: &&str| magic.iter().any(|number| line.contains(number));
-                for line in text.lines().filter(is_magic) {
-                    let rounds = line.contains("round(") || line.contains("rint(");
-                    let is_helper = line.contains("8388735.0; }") || line.contains("8388735.0f; }");
-                    let subtracts = line.contains("8388723.0f -")
-                        || line.contains("8388735.0f -")
-                        || line.ends_with(" - 8388735.0f;");
-                    assert!(
-                        rounds || is_helper || subtracts,
-                        "sum that compilers take apart: {line}"
-                    );
-                }
-            }
-            // Compilers keep the order of every number's arithmetic.
-            for text in [&glsl, &hlsl] {
-                let numbers = text
-                    .lines()
-                    .filter(|line| line.contains(" x") && line.contains(" = "));
-                for line in numbers.filter(|line| !line.contains("bool m")) {
-                    let is_result = line.trim_start().starts_with("result.");
-                    assert!(
-                        is_result || line.contains("precise float x"),
-                        "not precise: {line}"
-                    );
-                }
-            }
-            // Languages without infinity.
-            for text in [&wgsl, &c] {
+fn check_arithmetic<M: Registered>() {
+    for target in [Target::Exact, Target::Fused, Target::Gpu, Target::GpuNative] {
+        let program = with_gradients::<M>(target);
+        let [c, wgsl, glsl, hlsl, msl] = Language::ALL.map(|language| print(&program, language));
+        // Sums that round to an integer.
+        for text in [&wgsl, &msl] {
+            let magic = ["8388608.0", "8388723.0", "8388735.0"];
+            let is_magic = |line: &&str| magic.iter().any(|number| line.contains(number));
+            for line in text.lines().filter(is_magic) {
+                let rounds = line.contains("round(") || line.contains("rint(");
+                let is_helper = line.contains("8388735.0; }") || line.contains("8388735.0f; }");
+                let subtracts = line.contains("8388723.0f -")
+                    || line.contains("8388735.0f -")
+                    || line.ends_with(" - 8388735.0f;");
                 assert!(
-                    !text.contains("inf") || !text.contains("inff"),
-                    "a literal of infinity"
+                    rounds || is_helper || subtracts,
+                    "sum that compilers take apart: {line}"
                 );
             }
-            // Drivers take `h < 1 || -1 < h` for true.
-            let functions = program.functions().iter();
-            let tested = functions.flat_map(|function| {
-                let (graph, schedule) = (function.graph(), function.schedule());
-                let is_test = |place: &u32| graph.tested_number(*place).is_some();
-                schedule.into_iter().filter(is_test)
-            });
-            let tested = tested.count();
-            for text in [&wgsl, &glsl, &hlsl, &msl] {
-                // Itself, and of the second operand of `min` and `max`.
-                let found = text.matches("is_number(").count();
-                assert_eq!(found, 3 + tested, "{}: tests of numbers", program.name());
+        }
+        // Compilers keep the order of every number's arithmetic.
+        for text in [&glsl, &hlsl] {
+            let numbers = text
+                .lines()
+                .filter(|line| line.contains(" x") && line.contains(" = "));
+            for line in numbers.filter(|line| !line.contains("bool m")) {
+                let is_result = line.trim_start().starts_with("result.");
+                assert!(
+                    is_result || line.contains("precise float x"),
+                    "not precise: {line}"
+                );
             }
-            // The language's own choice among NaN.
-            for line in wgsl.lines() {
-                assert!(!line.contains(" min(") && !line.contains(" max("), "{line}");
-            }
+        }
+        // Languages without infinity.
+        for text in [&wgsl, &c] {
+            let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+            assert!(
+                words.all(|word| !["inf", "inff"].contains(&word)),
+                "a literal of infinity"
+            );
+        }
+        // Drivers take `h < 1 || -1 < h` for true.
+        let functions = program.functions().iter();
+        let tested = functions.flat_map(|function| {
+            let (graph, schedule) = (function.graph(), function.schedule());
+            let is_test = |place: &u32| graph.tested_number(*place).is_some();
+            schedule.into_iter().filter(is_test)
+        });
+        let tested = tested.count();
+        for text in [&wgsl, &glsl, &hlsl, &msl] {
+            // Itself, and of the second operand of `min` and `max`.
+            let found = text.matches("is_number(").count();
+            assert_eq!(found, 3 + tested, "{}: tests of numbers", program.name());
+        }
+        // The language's own choice among NaN.
+        for line in wgsl.lines() {
+            assert!(!line.contains(" min(") && !line.contains(" max("), "{line}");
         }
     }
 }
 
 #[test]
 fn text_avoids_what_compilers_do() {
-    every_model(Traps);
+    every_model!(check_arithmetic);
 }
 
 /// Instructions of a kind in a module.
@@ -383,42 +381,35 @@ fn from_hexadecimal(literal: &str) -> f64 {
     sign * f64::from(all) * f64::from(exponent - places).exp2()
 }
 
-#[derive(Clone, Copy)]
-struct Comments;
-
-impl Visitor for Comments {
-    type Output = ();
-
-    fn visit<M: Registered>(self) {
-        let program = with_gradients::<M>(Target::Exact);
-        for function in program.functions() {
-            let graph = function.graph();
-            for place in function.schedule() {
-                let (name, call) = (program.name(), function.name());
-                let stage = graph.origin(place).stage;
-                assert!(
-                    stage.is_some(),
-                    "{name} {call}: an operation without a stage"
-                );
-            }
-        }
-        for language in Language::ALL {
-            let text = print(&program, language);
-            let comments = text.lines().filter(|line| line.starts_with("    // "));
-            let is_place = |line: &str| line.contains(".rs");
+fn check_comments<M: Registered>() {
+    let program = with_gradients::<M>(Target::Exact);
+    for function in program.functions() {
+        let graph = function.graph();
+        for place in function.schedule() {
+            let (name, call) = (program.name(), function.name());
+            let stage = graph.origin(place).stage;
             assert!(
-                !comments.clone().any(is_place),
-                "{language:?}: a place in Rust"
+                stage.is_some(),
+                "{name} {call}: an operation without a stage"
             );
-            assert!(comments.count() > 20, "{language:?}: comments");
         }
+    }
+    for language in Language::ALL {
+        let text = print(&program, language);
+        let comments = text.lines().filter(|line| line.starts_with("    // "));
+        let is_place = |line: &str| line.contains(".rs");
+        assert!(
+            !comments.clone().any(is_place),
+            "{language:?}: a place in Rust"
+        );
+        assert!(comments.count() > 20, "{language:?}: comments");
     }
 }
 
 /// Every operation of every model stands below a sentence that says what it computes.
 #[test]
 fn comments_are_in_the_words_of_the_models() {
-    every_model(Comments);
+    every_model!(check_comments);
 }
 
 /// Code that uploads numbers notices another layout.

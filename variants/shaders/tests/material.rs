@@ -5,7 +5,7 @@ use hairis::Hit;
 use hairis::model::Single;
 use hairis::simd::Vec3x;
 use hairis_shaders::{Program, Target, numbers};
-use hairis_variants::{Kind, ModelId, Parameters, Registered, Values, Visitor};
+use hairis_variants::{Kind, ModelId, Parameters, Registered, Values};
 
 /// Parameters from all over their ranges, the ends included.
 fn legal<P: Parameters>(random: &mut Random) -> P {
@@ -112,37 +112,30 @@ fn effect<M: Registered>() -> [f64; 3] {
 /// Units in the last place that a constant may be away, in everyday and in any legal materials.
 const MOST: f64 = 8.0;
 
-#[derive(Clone, Copy)]
-struct Close;
-
-impl Visitor for Close {
-    type Output = ();
-
-    fn visit<M: Registered>(self) {
-        let id = ModelId::of::<M>();
-        let name = format!("{} {:?}", id.name(), id.choice());
-        let [everyday, legal] = [
-            distances::<M>(|random| random.material()),
-            distances::<M>(legal),
-        ];
-        for ((place, everyday), (_, legal)) in everyday.into_iter().zip(legal) {
-            if everyday > 0.0 || legal > 0.0 {
-                println!("{name} {place}: {everyday:.1}, {legal:.1}");
-            }
-            assert!(
-                everyday <= MOST && legal <= MOST,
-                "{name} {place}: {everyday}, {legal}"
-            );
+fn check_closeness<M: Registered>() {
+    let id = ModelId::of::<M>();
+    let name = format!("{} {:?}", id.name(), id.choice());
+    let [everyday, legal] = [
+        distances::<M>(|random| random.material()),
+        distances::<M>(legal),
+    ];
+    for ((place, everyday), (_, legal)) in everyday.into_iter().zip(legal) {
+        if everyday > 0.0 || legal > 0.0 {
+            println!("{name} {place}: {everyday:.1}, {legal:.1}");
         }
-        let effect = effect::<M>();
-        println!("{name}: value and density {effect:?}");
-        // Narrow lobes of Chiang's magnify the last digits of their variance in their tails.
-        let most = if id.name() == "chiang" { 2e-5 } else { 1e-6 };
-        assert!(effect[2] < most, "{name}: {effect:?}");
+        assert!(
+            everyday <= MOST && legal <= MOST,
+            "{name} {place}: {everyday}, {legal}"
+        );
     }
+    let effect = effect::<M>();
+    println!("{name}: value and density {effect:?}");
+    // Narrow lobes of Chiang's magnify the last digits of their variance in their tails.
+    let most = if id.name() == "chiang" { 2e-5 } else { 1e-6 };
+    assert!(effect[2] < most, "{name}: {effect:?}");
 }
 
 #[test]
 fn single_precision_has_the_constants_of_the_library() {
-    every_model(Close);
+    every_model!(check_closeness);
 }

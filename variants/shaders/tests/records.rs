@@ -55,28 +55,21 @@ fn operations_are_those_recorded() {
     assert_eq!(text.lines().count(), recorded.lines().count());
 }
 
-#[derive(Clone, Copy)]
-struct Shared;
-
-impl Visitor for Shared {
-    type Output = ();
-
-    fn visit<M: Registered>(self) {
-        for target in [Target::Exact, Target::Gpu] {
-            let program = Program::of::<M>(target);
-            let count = |call| program.function(call).operations();
-            let (prepare, eval) = (count(Call::Prepare), count(Call::Eval));
-            assert!(count(Call::EvalHit) <= prepare + eval, "no operation twice");
-            let both = count(Call::EvalSampleHit);
-            assert!(
-                both < count(Call::EvalHit) + count(Call::SampleHit),
-                "the hit is shared"
-            );
-        }
+fn check_shared<M: Registered>() {
+    for target in [Target::Exact, Target::Gpu] {
+        let program = Program::of::<M>(target);
+        let count = |call| program.function(call).operations();
+        let (prepare, eval) = (count(Call::Prepare), count(Call::Eval));
+        assert!(count(Call::EvalHit) <= prepare + eval, "no operation twice");
+        let both = count(Call::EvalSampleHit);
+        assert!(
+            both < count(Call::EvalHit) + count(Call::SampleHit),
+            "the hit is shared"
+        );
     }
 }
 
 #[test]
 fn fused_calls_share_operations() {
-    every_model(Shared);
+    every_model!(check_shared);
 }

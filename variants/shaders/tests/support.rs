@@ -333,11 +333,27 @@ impl Tally {
 }
 
 /// Runs a test of each model of the list.
-pub(crate) fn every_model<V: Visitor + Copy>(visitor: V) {
+pub(crate) fn visit_every_model<V: Visitor + Copy>(visitor: V) {
     for id in ModelId::ALL {
         id.visit(visitor);
     }
 }
+
+/// Runs a function of a model for each of the list.
+macro_rules! every_model {
+    ($check:ident) => {{
+        #[derive(Clone, Copy)]
+        struct Each;
+        impl hairis_variants::Visitor for Each {
+            type Output = ();
+            fn visit<M: hairis_variants::Registered>(self) {
+                $check::<M>();
+            }
+        }
+        $crate::support::visit_every_model(Each);
+    }};
+}
+pub(crate) use every_model;
 
 /// Count of cases per model: all of them when `HAIRIS_CASES` says how many.
 pub(crate) fn case_count(usual: usize) -> usize {

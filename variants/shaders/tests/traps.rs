@@ -20,25 +20,18 @@
 use crate::languages::with_gradients;
 use crate::support::every_model;
 use hairis_shaders::{Function, Language, Program, Target, print};
-use hairis_variants::{KajiyaKay, Registered, Visitor};
+use hairis_variants::{KajiyaKay, Registered};
 
-#[derive(Clone, Copy)]
-struct Straight;
-
-impl Visitor for Straight {
-    type Output = ();
-
-    fn visit<M: Registered>(self) {
-        let program = with_gradients::<M>(Target::Gpu);
-        for language in Language::ALL {
-            let text = print(&program, language);
-            for word in ["for (", "for(", "while", "if (", "goto", "switch"] {
-                let mut lines = text
-                    .lines()
-                    .filter(|line| !line.trim_start().starts_with("//"));
-                let line = lines.find(|line| line.contains(word));
-                assert_eq!(line, None, "{} in {language:?}", program.name());
-            }
+fn check_straight_line<M: Registered>() {
+    let program = with_gradients::<M>(Target::Gpu);
+    for language in Language::ALL {
+        let text = print(&program, language);
+        for word in ["for (", "for(", "while", "if (", "goto", "switch"] {
+            let mut lines = text
+                .lines()
+                .filter(|line| !line.trim_start().starts_with("//"));
+            let line = lines.find(|line| line.contains(word));
+            assert_eq!(line, None, "{} in {language:?}", program.name());
         }
     }
 }
@@ -46,7 +39,7 @@ impl Visitor for Straight {
 /// No branch and no loop: a GPU's lanes stay together, and a compiler vectorises a loop over a function.
 #[test]
 fn functions_are_straight_lines() {
-    every_model(Straight);
+    every_model!(check_straight_line);
 }
 
 /// Compilers that contract or reorder arithmetic unless told otherwise are told how, in the file itself.

@@ -3,7 +3,7 @@
 
 use crate::gradients::Weighted;
 use crate::languages::{compile_glsl, tool, write_words};
-use crate::support::{Case, Tally, case_count, every_model, unsigned};
+use crate::support::{Case, Tally, case_count, unsigned, visit_every_model};
 use hairis_shaders::driver as shader_driver;
 use hairis_shaders::{
     Call, Function, Language, Program, Rounding, Target, every_operation, print, spirv,
@@ -212,7 +212,7 @@ impl Visitor for Kept<'_> {
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn shaders_that_keep_their_order_have_the_bits_of_one_lane() {
     let tally = Tally::default();
-    every_model(Kept(&tally));
+    visit_every_model(Kept(&tally));
     tally.check();
 }
 
@@ -332,13 +332,13 @@ impl Visitor for Plain {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn plain_shaders_have_the_accuracy_of_one_lane() {
-    every_model(Plain(Host::Vulkan));
+    visit_every_model(Plain(Host::Vulkan));
 }
 
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn shaders_of_a_browser_have_the_accuracy_of_one_lane() {
-    every_model(Plain(Host::Browser));
+    visit_every_model(Plain(Host::Browser));
 }
 
 #[derive(Clone, Copy)]
@@ -380,11 +380,11 @@ impl Visitor for Gradients {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn gradients_of_shaders_are_those_of_differences() {
-    every_model(Gradients(Host::Vulkan));
+    visit_every_model(Gradients(Host::Vulkan));
 }
 
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn gradients_in_a_browser_are_those_of_differences() {
-    every_model(Gradients(Host::Browser));
+    visit_every_model(Gradients(Host::Browser));
 }

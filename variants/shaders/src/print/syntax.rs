@@ -61,6 +61,11 @@ HAIRIS_FN HairisVec3 hairis_vec3(float x, float y, float z) { HairisVec3 a; a.x 
 const GLSL: &str = "\
 #ifndef HAIRIS_OPERATIONS
 #define HAIRIS_OPERATIONS
+// Fragment shaders of ES have no precision for float, and 16 bits for uint.
+#ifdef GL_ES
+precision highp float;
+precision highp int;
+#endif
 #define HAIRIS_FN
 #define HAIRIS_MASK bool
 #define HAIRIS_UINT uint
