@@ -26,61 +26,28 @@ fn packets_without_a_level_run_on_the_one_found() {
         };
         let [wo, wi] = [eight(), eight()];
         let xi = lanes_of(&core::array::from_fn(|_| draws.xi3()));
-        let same = |default: String, found: String, what: &str| {
-            assert_eq!(default, found, "{what} of {wo:?} {wi:?}")
-        };
-        let text = |of: &dyn core::fmt::Debug| format!("{of:?}");
-        let (shared, mixed) = (a.prepare8(&wo), packed.prepare8(&wo));
-        same(
-            text(&shared),
-            text(&a.with_level(level).prepare8(&wo)),
-            "one material",
-        );
-        same(
-            text(&mixed),
-            text(&packed.with_level(level).prepare8(&wo)),
-            "eight materials",
-        );
-        same(
-            text(&mixed.eval_pdf8(&wi)),
-            text(&mixed.with_level(level).eval_pdf8(&wi)),
-            "values of eight hits",
-        );
-        same(
-            text(&mixed.sample8(&xi)),
-            text(&mixed.with_level(level).sample8(&xi)),
-            "samples of eight hits",
-        );
-        same(
-            text(&mixed.lobes8(&wi)),
-            text(&mixed.with_level(level).lobes8(&wi)),
-            "lobes of eight hits",
-        );
-        same(
-            text(&mixed.albedo8()),
-            text(&mixed.with_level(level).albedo8()),
-            "albedos of eight hits",
-        );
-        same(
-            text(&mixed.conserving()),
-            text(&mixed.with_level(level).conserving()),
-            "eight hits that conserve energy",
-        );
+        macro_rules! same {
+            ($of:ident.$call:ident($($argument:expr)?)) => {
+                assert_eq!(
+                    format!("{:?}", $of.$call($($argument)?)),
+                    format!("{:?}", $of.with_level(level).$call($($argument)?)),
+                    "{}.{} of {wo:?} {wi:?}",
+                    stringify!($of),
+                    stringify!($call),
+                );
+            };
+        }
+        same!(a.prepare8(&wo));
+        same!(packed.prepare8(&wo));
+        let mixed = packed.prepare8(&wo);
+        same!(mixed.eval_pdf8(&wi));
+        same!(mixed.sample8(&xi));
+        same!(mixed.lobes8(&wi));
+        same!(mixed.albedo8());
+        same!(mixed.conserving());
         let one = mixed.lane(3);
-        same(
-            text(&one.eval_pdf8(&wi)),
-            text(&one.with_level(level).eval_pdf8(&wi)),
-            "values of one hit",
-        );
-        same(
-            text(&one.sample8(&xi)),
-            text(&one.with_level(level).sample8(&xi)),
-            "samples of one hit",
-        );
-        same(
-            text(&one.lobes8(&wi)),
-            text(&one.with_level(level).lobes8(&wi)),
-            "lobes of one hit",
-        );
+        same!(one.eval_pdf8(&wi));
+        same!(one.sample8(&xi));
+        same!(one.lobes8(&wi));
     }
 }

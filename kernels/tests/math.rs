@@ -1,5 +1,12 @@
 //! The elementary functions against double precision, over dense scans of their ranges.
 
+/// The scalar result of a function of two numbers, after it was compared with eight lanes.
+macro_rules! both {
+    ($x:expr, $f:expr, $worst:expr) => {
+        $crate::math::both($x, $f, $f, $worst)
+    };
+}
+
 mod tails;
 
 use crate::support::{Draws, narrow};
@@ -56,55 +63,12 @@ fn both(
     scalar
 }
 
-fn exp<L: Lanes>([s, _]: [L; 2]) -> L {
-    gaussian(s)
-}
-fn atan<L: Lanes>([x, _]: [L; 2]) -> L {
-    atan_unit(x)
-}
-fn atan2<L: Lanes>([y, x]: [L; 2]) -> L {
-    atan2_upper(y, x)
-}
-fn half<L: Lanes>([y, x]: [L; 2]) -> L {
-    half_atan2(y, x, x.mul_add(x, y * y).sqrt())
-}
-fn complement<L: Lanes>([s, _]: [L; 2]) -> L {
-    gaussian_and_complement(s).1
-}
-fn log_one_plus<L: Lanes>([f, _]: [L; 2]) -> L {
-    log2_one_plus(f)
-}
-fn atan_eighth<L: Lanes>([x, _]: [L; 2]) -> L {
-    atan_eighth_turn(x)
-}
-fn sin<L: Lanes>([x, _]: [L; 2]) -> L {
-    sin_cos_twice(x).0
-}
-fn cos<L: Lanes>([x, _]: [L; 2]) -> L {
-    sin_cos_twice(x).1
-}
-fn sin_absolute<L: Lanes>([x, _]: [L; 2]) -> L {
-    sin_cos_absolute(x).0
-}
-fn cos_absolute<L: Lanes>([x, _]: [L; 2]) -> L {
-    sin_cos_absolute(x).1
-}
-fn half_of<L: Lanes>([sin, cos]: [L; 2]) -> L {
-    half_angle(sin, cos)
-}
-fn numerator<L: Lanes>([x, _]: [L; 2]) -> L {
-    tan_half_turn(x).0
-}
-fn denominator<L: Lanes>([x, _]: [L; 2]) -> L {
-    tan_half_turn(x).1
-}
-
 #[test]
 fn gaussian_is_accurate_and_then_zero() {
     let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
     let zero = 2.0 * 115.0 * core::f32::consts::LN_2;
     for s in scan(0.0, 0.99 * zero).chain(scan(0.0, 2.0)) {
-        let got = both([s, 0.0], exp, exp, &mut lanes);
+        let got = both!([s, 0.0], |[s, _]| gaussian(s), &mut lanes);
         // One lane does not fuse: the exponent is rounded, and the power is as far off as it is large.
         worst.see(
             ulp(got, (-f64::from(s) / 2.0).exp()) / (1.0 + f64::from(s) / 2.0),
@@ -151,7 +115,10 @@ fn atan_unit_is_accurate() {
         LargestError::default(),
     );
     for x in scan(-1.0, 1.0) {
-        let (got, want) = (both([x, 0.0], atan, atan, &mut lanes), f64::from(x).atan());
+        let (got, want) = (
+            both!([x, 0.0], |[x, _]| atan_unit(x), &mut lanes),
+            f64::from(x).atan(),
+        );
         worst.see(ulp(got, want), || format!("{x:e}"));
         absolute.see((f64::from(got) - want).abs(), || format!("{x:e}"));
     }
@@ -180,7 +147,7 @@ fn atan2_upper_is_accurate_at_every_magnitude() {
         let size = draws.scale(1e-15, 1e15);
         let (y, x) = (narrow(size * angle.sin()).abs(), narrow(size * angle.cos()));
         let (got, want) = (
-            both([y, x], atan2, atan2, &mut lanes),
+            both!([y, x], |[y, x]| atan2_upper(y, x), &mut lanes),
             f64::from(y).atan2(f64::from(x)),
         );
         worst.see(ulp(got, want), || format!("y {y:e} x {x:e}"));
@@ -224,7 +191,11 @@ fn half_atan2_is_accurate_at_both_ends() {
             narrow(size * angle.cos()).abs(),
         );
         let (got, want) = (
-            both([y, x], half, half, &mut lanes),
+            both!(
+                [y, x],
+                |[y, x]| half_atan2(y, x, Lanes::mul_add(x, x, y * y).sqrt()),
+                &mut lanes
+            ),
             0.5 * f64::from(y).atan2(f64::from(x)),
         );
         worst.see(ulp(got, want), || format!("y {y:e} x {x:e}"));
@@ -273,7 +244,7 @@ fn half_of_an_angle_from_its_sine_and_cosine_is_accurate() {
             };
         let (sin, cos) = (narrow(angle.sin()), narrow(angle.cos()));
         let (got, want) = (
-            both([sin, cos], half_of, half_of, &mut lanes),
+            both!([sin, cos], |[sin, cos]| half_angle(sin, cos), &mut lanes),
             0.5 * f64::from(sin).atan2(f64::from(cos)),
         );
         worst.see((f64::from(got) - want).abs(), || format!("{angle:e}"));
@@ -294,12 +265,11 @@ fn half_of_an_angle_from_its_sine_and_cosine_is_accurate() {
 fn numerator_and_denominator_of_a_tangent_are_accurate() {
     let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
     for x in scan(-FRAC_PI_2, FRAC_PI_2) {
-        let n = both([x, 0.0], numerator, numerator, &mut lanes);
-        let d = both(
+        let n = both!([x, 0.0], |[x, _]| tan_half_turn(x).0, &mut lanes);
+        let d = both!(
             [x, 0.0],
-            denominator,
-            denominator,
-            &mut LargestError::default(),
+            |[x, _]| tan_half_turn(x).1,
+            &mut LargestError::default()
         );
         worst.see(
             (f64::from(n).atan2(f64::from(d)) - f64::from(x)).abs(),
@@ -323,8 +293,8 @@ fn sine_and_cosine_are_accurate_where_they_vanish() {
     let near_the_pole = (0..=4096).map(|i| f32::from_bits(FRAC_PI_4.to_bits() - i));
     for x in scan(-FRAC_PI_4, FRAC_PI_4).chain(near_the_pole) {
         let (s, c) = (
-            both([x, 0.0], sin, sin, &mut sine_lanes),
-            both([x, 0.0], cos, cos, &mut cosine_lanes),
+            both!([x, 0.0], |[x, _]| sin_cos_twice(x).0, &mut sine_lanes),
+            both!([x, 0.0], |[x, _]| sin_cos_twice(x).1, &mut cosine_lanes),
         );
         let (want_s, want_c) = (2.0 * f64::from(x)).sin_cos();
         sine.see(ulp(s, want_s), || format!("{x:e}"));
@@ -353,14 +323,13 @@ fn the_sine_and_cosine_of_inversion_are_accurate_absolutely() {
         LargestError::default(),
     );
     for x in scan(-FRAC_PI_2, FRAC_PI_2) {
-        let s = both([x, 0.0], sin_absolute, sin_absolute, &mut sine_lanes);
-        let c = both(
+        let s = both!([x, 0.0], |[x, _]| sin_cos_absolute(x).0, &mut sine_lanes);
+        let c = both!(
             [x, 0.0],
-            cos_absolute,
-            cos_absolute,
-            &mut LargestError::default(),
+            |[x, _]| sin_cos_absolute(x).1,
+            &mut LargestError::default()
         );
-        let c8 = cos_absolute([f32x8::splat(x); 2]).to_array()[3];
+        let c8 = sin_cos_absolute(f32x8::splat(x)).1.to_array()[3];
         cosine_lanes.see(f64::from(c - c8).abs(), || format!("{x:e}"));
         let (want_s, want_c) = f64::from(x).sin_cos();
         worst.see(
@@ -383,7 +352,7 @@ fn a_gaussian_s_complement_keeps_its_digits_where_it_is_small() {
         .chain(scan(0.0, 2.0))
         .chain(scan(0.0, 1e-6))
     {
-        let got = both([s, 0.0], complement, complement, &mut lanes);
+        let got = both!([s, 0.0], |[s, _]| gaussian_and_complement(s).1, &mut lanes);
         worst.see(ulp(got, -(-f64::from(s) / 2.0).exp_m1()), || {
             format!("{s:e}")
         });
@@ -411,7 +380,7 @@ fn a_logarithm_next_to_one_keeps_the_digits_of_the_difference() {
     let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
     let least = -1.0 + f32::EPSILON / 2.0;
     for f in scan(least, 0.0).chain(scan(-1e-6, 0.0)) {
-        let got = both([f, 0.0], log_one_plus, log_one_plus, &mut lanes);
+        let got = both!([f, 0.0], |[f, _]| log2_one_plus(f), &mut lanes);
         worst.see(
             ulp(got, f64::from(f).ln_1p() / core::f64::consts::LN_2),
             || format!("{f:e}"),
@@ -432,7 +401,7 @@ fn the_arc_tangent_of_an_eighth_of_a_turn_is_accurate() {
     for x in scan(-most, most) {
         worst.see(
             ulp(
-                both([x, 0.0], atan_eighth, atan_eighth, &mut lanes),
+                both!([x, 0.0], |[x, _]| atan_eighth_turn(x), &mut lanes),
                 f64::from(x).atan(),
             ),
             || format!("{x:e}"),

@@ -30,7 +30,6 @@ pub(crate) const PUBLISHED: Rows = Rows {
     // 5.9e-7, 6.3e-7, 9.6e-7
     levels: [8e-7, 8e-7, 1.3e-6],
     // 4.4e-6; 0 where neither fuses
-    albedo_lanes: 5.8e-6,
     // 3.0e-6
     albedo: 4e-6,
     // 5.3e-5
@@ -78,7 +77,6 @@ pub(crate) const MATCHED: Rows = Rows {
     // 5.9e-7, 6.1e-7, 3.4e-6
     levels: [7.7e-7, 7.9e-7, 4.4e-6],
     // 4.4e-6; 0 where neither fuses
-    albedo_lanes: 5.8e-6,
     // 3.0e-6
     albedo: 4e-6,
     // 5.3e-5

@@ -8,7 +8,7 @@ use hairis_conformance::{
     AnyMaterial, AsConserving, Claims, Expected, Materials, Subject, Tolerance, conformance,
     strategies,
 };
-use hairis_reference::{ChiangReference, Reference, Selection};
+use hairis_reference::{ChiangReference, Reference, Selection, bessel_i0_scaled};
 use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParams, FarField, OffsetNodes, Shifts};
 
 /// The model with one of its selections.
@@ -373,7 +373,7 @@ fn tilt_has_the_opposite_sign_of_pbrt_and_mitsuba() {
         let v = f64::from(desc.longitudinal_variance());
         let other = |factor: f64, width: f64, theta_i: f64| {
             let (turned, v) = ((theta_o + factor * 5.0).to_radians(), v * width);
-            let bessel = scaled_i0(theta_i.cos() * turned.cos() / v);
+            let bessel = bessel_i0_scaled(theta_i.cos() * turned.cos() / v);
             bessel * ((theta_i.cos() * turned.cos() - theta_i.sin() * turned.sin() - 1.0) / v).exp()
         };
         for (lobe, factor, width, centre) in [
@@ -396,13 +396,4 @@ fn tilt_has_the_opposite_sign_of_pbrt_and_mitsuba() {
             assert!(apart < 0.5 * width.max(1.0), "{lobe:?} {theta_o}: {ours}");
         }
     }
-}
-
-/// `exp(-x) I0(x)`, by the midpoint rule over half a turn.
-fn scaled_i0(x: f64) -> f64 {
-    let cos = |step: u32| ((f64::from(step) + 0.5) * core::f64::consts::PI / 512.0).cos();
-    (0..512)
-        .map(|step| (x * (cos(step) - 1.0)).exp())
-        .sum::<f64>()
-        / 512.0
 }

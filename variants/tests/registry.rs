@@ -1,9 +1,7 @@
 //! The list of models: names, parameters as fields, and handles that answer as those of the model's type do.
 
 use crate::support::{Draws, direction, lanes_of, packet};
-use core::fmt::Debug;
 use glam::Vec3;
-use hairis::columns::EvalColumns;
 use hairis::params::Rule;
 use hairis::simd::Level;
 use hairis::{Conserving, HairParams, Hit, Lobe, LobeMask, Material, Material8, ParamError};
@@ -103,6 +101,17 @@ fn a_field_takes_the_place_of_another() {
     );
 }
 
+/// A call chosen at run time and that of the type. Debug shows every bit that matters, and NaN.
+macro_rules! same {
+    ($chosen:ident, $of_type:ident; $call:ident($($argument:expr)?)) => {
+        assert_eq!(
+            format!("{:?}", $chosen.$call($($argument)?)),
+            format!("{:?}", $of_type.$call($($argument)?)),
+            stringify!($call),
+        );
+    };
+}
+
 /// Compares the handles of a type with those chosen at run time, to the bit.
 struct Compare;
 
@@ -131,114 +140,53 @@ impl Visitor for Compare {
         };
         let (one, chosen) = (materials[0].prepare(hit), any[0].prepare(hit));
         assert_eq!(chosen.model(), id, "the entry it came from");
+        let (wi8, xi8) = (packet(&wi), lanes_of(&xi));
+        // The handles forward every call through one reference, so one call of each kind shows that it arrives.
         for lobes in [LobeMask::ALL, LobeMask::of(&[Lobe::slot(0)])] {
             let (one, chosen) = (one.with_lobes(lobes), chosen.with_lobes(lobes));
-            for (wi, xi) in wi.into_iter().zip(xi) {
-                same(&chosen.eval_pdf(wi), &one.eval_pdf(wi));
-                same(&chosen.lobes(wi), &one.lobes(wi));
-                same(&chosen.sample(xi), &one.sample(xi));
-            }
-            same(&chosen.albedo(), &one.albedo());
+            same!(chosen, one; eval_pdf(wi[0]));
+            same!(chosen, one; lobes(wi[0]));
+            same!(chosen, one; sample(xi[0]));
+            same!(chosen, one; albedo());
             for level in Level::available() {
-                same(
-                    &chosen.with_level(level).eval_pdf8(&packet(&wi)),
-                    &one.with_level(level).eval_pdf8(&packet(&wi)),
-                );
-                same(
-                    &chosen.with_level(level).sample8(&lanes_of(&xi)),
-                    &one.with_level(level).sample8(&lanes_of(&xi)),
-                );
+                let (one, chosen) = (one.with_level(level), chosen.with_level(level));
+                same!(chosen, one; eval_pdf8(&wi8));
+                same!(chosen, one; sample8(&xi8));
+                same!(chosen, one; lobes8(&wi8));
             }
-            for level in Level::available() {
-                same(
-                    &chosen.with_level(level).lobes8(&packet(&wi)),
-                    &one.with_level(level).lobes8(&packet(&wi)),
-                );
-            }
-            same(&chosen.lobes8(&packet(&wi)), &one.lobes8(&packet(&wi)));
         }
-        let columns = [wi.map(|wi| wi.x), wi.map(|wi| wi.y), wi.map(|wi| wi.z)];
-        let columns = columns.each_ref().map(|column| column.as_slice());
-        let (mut value, mut pdf) = ([[0.0; 8]; 3], [0.0; 8]);
-        let [r, g, b] = &mut value;
-        chosen
-            .eval_columns(
-                columns,
-                EvalColumns {
-                    value: Some([r, g, b]),
-                    pdf: Some(&mut pdf),
-                },
-            )
-            .unwrap();
-        let (mut value_of_type, mut pdf_of_type) = ([[0.0; 8]; 3], [0.0; 8]);
-        let [r, g, b] = &mut value_of_type;
-        one.eval_columns(
-            columns,
-            EvalColumns {
-                value: Some([r, g, b]),
-                pdf: Some(&mut pdf_of_type),
-            },
-        )
-        .unwrap();
-        same(&(value, pdf), &(value_of_type, pdf_of_type));
 
         let eight = Material8::pack(materials.each_ref()).prepare8(&packet(&wo));
         let chosen = AnyMaterial8::pack(any.each_ref())
             .expect("of one model")
             .prepare8(&packet(&wo));
-        same(
-            &chosen.eval_pdf8(&packet(&wi)),
-            &eight.eval_pdf8(&packet(&wi)),
-        );
-        same(
-            &chosen.sample8(&lanes_of(&xi)),
-            &eight.sample8(&lanes_of(&xi)),
-        );
-        same(&chosen.lobes8(&packet(&wi)), &eight.lobes8(&packet(&wi)));
-        same(&chosen.albedo8(), &eight.albedo8());
         for level in Level::available() {
-            same(
-                &chosen.with_level(level).lobes8(&packet(&wi)),
-                &eight.with_level(level).lobes8(&packet(&wi)),
-            );
-            same(
-                &chosen.with_level(level).albedo8(),
-                &eight.with_level(level).albedo8(),
-            );
+            let (eight, chosen) = (eight.with_level(level), chosen.with_level(level));
+            same!(chosen, eight; eval_pdf8(&wi8));
+            same!(chosen, eight; sample8(&xi8));
+            same!(chosen, eight; lobes8(&wi8));
+            same!(chosen, eight; albedo8());
         }
-        same(
-            &chosen.lane(3).eval_pdf(wi[3]),
-            &eight.lane(3).eval_pdf(wi[3]),
-        );
-        same(&any[1].conserving_scale(), &materials[1].conserving_scale());
+        let (lane, chosen_lane) = (eight.lane(3), chosen.lane(3));
+        same!(chosen_lane, lane; eval_pdf(wi[3]));
+        let (second, any_second) = (&materials[1], &any[1]);
+        same!(any_second, second; conserving_scale());
 
         let conserving = presets.map(|params| Material::new(&Conserving(M::MODEL), &params));
         let any = any.map(|one| one.conserving());
         for (one, chosen) in conserving.iter().zip(&any) {
-            same(&chosen.integrates(), &one.integrates());
+            same!(chosen, one; integrates());
             let (one, chosen) = (one.prepare(hit), chosen.prepare(hit));
-            same(&chosen.eval_pdf(wi[0]), &one.eval_pdf(wi[0]));
-            same(&chosen.albedo(), &one.albedo());
+            same!(chosen, one; eval_pdf(wi[0]));
+            same!(chosen, one; albedo());
         }
         let eight = Material8::pack(conserving.each_ref()).prepare8(&packet(&wo));
         let chosen = AnyMaterial8::pack(any.each_ref())
             .expect("of one model")
             .prepare8(&packet(&wo));
-        same(
-            &chosen.eval_pdf8(&packet(&wi)),
-            &eight.eval_pdf8(&packet(&wi)),
-        );
-        same(&chosen.albedo8(), &eight.albedo8());
+        same!(chosen, eight; eval_pdf8(&wi8));
+        same!(chosen, eight; albedo8());
     }
-}
-
-/// Debug shows every bit that matters, and NaN.
-fn same<T: Debug>(chosen: &T, of_type: &T) {
-    assert_eq!(
-        format!("{chosen:?}"),
-        format!("{of_type:?}"),
-        "chosen at run time, and of the type"
-    );
 }
 
 #[test]

@@ -30,7 +30,6 @@ pub(crate) const PUBLISHED: Rows = Rows {
     // 6.5e-7, 5.8e-7, 9.6e-7
     levels: [8.4e-7, 7.6e-7, 1.3e-6],
     // 1.8e-6; 0 where neither fuses
-    albedo_lanes: 2.4e-6,
     // 2.2e-6
     albedo: 2.9e-6,
     // 4.3e-5
@@ -78,7 +77,6 @@ pub(crate) const MATCHED: Rows = Rows {
     // 6.5e-7, 6e-7, 1.6e-6
     levels: [8.4e-7, 7.8e-7, 2.1e-6],
     // 1.8e-6; 0 where neither fuses
-    albedo_lanes: 2.4e-6,
     // 2.2e-6
     albedo: 2.9e-6,
     // 4.3e-5

@@ -4,4 +4,4 @@ mod chiang;
 mod chiang_sampling;
 mod errata;
 mod kajiya_kay;
-mod support;
+pub(crate) mod support;

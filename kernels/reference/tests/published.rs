@@ -4,13 +4,13 @@ mod errata;
 mod interface;
 mod variance;
 
+use crate::fibers::support::{DEG, direction, points};
 use crate::quadrature::{panels, rule};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::params::HairDesc;
 use hairis::{HairParams, Lobe};
 use hairis_reference::{HairReference, Real, Reference, Shape};
 
-const DEG: f64 = PI / 180.0;
 const SHAPES: [Shape; 2] = [Shape::Gaussian, Shape::Cauchy];
 /// Inclinations of `wo`, degrees: the tilted and grazing ones are where errors of the bounds show.
 const THETA_O: [f64; 6] = [0.0, 40.0, -80.0, 85.0, 89.9, -90.0];
@@ -35,15 +35,6 @@ fn with_tilt_and_width(tilt: [f64; 3], width: f64) -> HairDesc<f64> {
     }
 }
 
-/// A unit vector; `theta` and `phi` in radians.
-pub(crate) fn direction(theta: f64, phi: f64) -> [f64; 3] {
-    [
-        theta.sin(),
-        theta.cos() * phi.cos(),
-        theta.cos() * phi.sin(),
-    ]
-}
-
 /// Panels in `theta_i` and in `phi` fit for every lobe of `p` seen from `theta_o`, short of the discarded caps.
 pub(crate) fn sphere(p: &HairDesc<f64>, theta_o: f64) -> [Vec<(f64, f64)>; 2] {
     let peaks = [0, 1, 2].map(|lobe| (2.0 * p.alpha[lobe] - theta_o, 2.0 * p.beta[lobe]));
@@ -63,16 +54,6 @@ fn uniforms(count: u32) -> impl Iterator<Item = f64> {
     let ends = [0.0, 0.5, 1.0 - f64::from(f32::EPSILON) / 2.0];
     ends.into_iter()
         .chain((1..=count).map(|n| (f64::from(n) * 0.618_033_988_749_894_9).fract()))
-}
-
-/// `count` points of a three-dimensional low-discrepancy sequence (Roberts' R3).
-fn points(count: u32) -> impl Iterator<Item = [f64; 3]> {
-    let steps = [
-        0.819_172_513_396_164_5,
-        0.671_043_606_703_789_3,
-        0.549_700_477_901_97,
-    ];
-    (1..=count).map(move |n| steps.map(|step: f64| (0.5 + f64::from(n) * step).fract()))
 }
 
 #[test]

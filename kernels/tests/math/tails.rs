@@ -1,29 +1,15 @@
 //! The logarithm and the tails of the normal distribution.
 
-use super::{POINTS, both};
+use super::POINTS;
 use crate::support::narrow;
 use crate::tolerance as bound;
 use hairis::model::math::{gaussian, log2, normal_tail, normal_tail_inverse, normal_tail_ratio};
-use hairis::simd::Lanes;
 use hairis_conformance::comparison::LargestError;
 use hairis_reference::Real;
 
 /// Probability that a standard normal number is above `x`.
 fn above(x: f64) -> f64 {
     0.5 * Real::erfc(x / 2.0_f64.sqrt())
-}
-
-fn logarithm<L: Lanes>([x, _]: [L; 2]) -> L {
-    log2(x)
-}
-fn tail_ratio<L: Lanes>([x, _]: [L; 2]) -> L {
-    normal_tail_ratio(x)
-}
-fn tail<L: Lanes>([x, _]: [L; 2]) -> L {
-    normal_tail(x)
-}
-fn tail_inverse<L: Lanes>([q, _]: [L; 2]) -> L {
-    normal_tail_inverse(q)
 }
 
 /// The last argument collects what eight lanes and one differ by; it is bounded by the error of either.
@@ -34,16 +20,16 @@ fn logarithm_and_normal_tails_are_accurate() {
         let share = f64::from(i) / f64::from(POINTS);
         let x = narrow((-126.0 + 253.0 * share).exp2());
         let want = f64::from(x).log2();
-        let got = both([x, 0.0], logarithm, logarithm, &mut lanes);
+        let got = both!([x, 0.0], |[x, _]| log2(x), &mut lanes);
         worst[0].see((f64::from(got) - want).abs() / (1.0 + want.abs()), || {
             format!("{x}")
         });
         let x = narrow(12.6 * share);
         let want = above(f64::from(x)) * (f64::from(x).powi(2) / 2.0).exp();
-        let got = both([x, 0.0], tail_ratio, tail_ratio, &mut lanes);
+        let got = both!([x, 0.0], |[x, _]| normal_tail_ratio(x), &mut lanes);
         worst[1].see((f64::from(got) / want - 1.0).abs(), || format!("{x}"));
         assert_eq!(
-            both([x, 0.0], tail, tail, &mut lanes),
+            both!([x, 0.0], |[x, _]| normal_tail(x), &mut lanes),
             got * gaussian(x * x),
             "tail of {x}"
         );
@@ -51,11 +37,10 @@ fn logarithm_and_normal_tails_are_accurate() {
         for q in [0.5 * share, (-1.0 - 115.0 * share).exp2()] {
             let q = narrow(q);
             if q > f32::MIN_POSITIVE {
-                let error = above(f64::from(both(
+                let error = above(f64::from(both!(
                     [q, 0.0],
-                    tail_inverse,
-                    tail_inverse,
-                    &mut lanes,
+                    |[q, _]| normal_tail_inverse(q),
+                    &mut lanes
                 ))) - f64::from(q);
                 worst[2].see(error.abs(), || format!("{q}"));
                 worst[3].see(error.abs() / f64::from(q), || format!("{q}"));

@@ -38,7 +38,7 @@ pub fn even_points_invert_density(subject: &dyn ErasedSubject) -> Outcome {
                 let bsdf = all.with_lobes(mask);
                 let mesh = Mesh::new(subject, material, &hit, &*bsdf, mask);
                 let [rows, width] = mesh.size();
-                // SampleLanes less expected.
+                // Samples less expected.
                 let mut mass: Vec<f64> = Integral::density(&*bsdf, &mesh)
                     .mass
                     .iter()

@@ -8,8 +8,9 @@ use crate::failure::{Failure, Outcome, Worst};
 use crate::near::{Nearby, sample_is_near};
 use crate::probe::{cos_theta, hits8, packet, triples};
 use crate::subject::Claims;
+use hairis::model::LobeEval8;
 use hairis::simd::{Level, f32x8};
-use hairis::{Eval, Hit, Lobe, PerLobe, Sample8};
+use hairis::{Eval, Eval8, Hit, Lobe, PerLobe, Sample8};
 
 const ORDER: [usize; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
 
@@ -174,6 +175,33 @@ pub fn lanes_permute(subject: &dyn ErasedSubject) -> Outcome {
     })
 }
 
+/// Bits of a lane of lobes.
+fn lobe_bits(lobes: &PerLobe<LobeEval8>, lane: usize) -> [[u32; 5]; 4] {
+    lobes.0.map(|lobe| {
+        let [r, g, b] = lobe.color;
+        [lobe.value, lobe.pdf, r, g, b].map(|x| x.as_array()[lane].to_bits())
+    })
+}
+
+/// Bits of a lane of albedos.
+fn albedo_bits(albedo: &PerLobe<[f32x8; 3]>, lane: usize) -> [[u32; 3]; 4] {
+    let bits = |x: f32x8| x.as_array()[lane].to_bits();
+    albedo.0.map(|color| color.map(bits))
+}
+
+/// Bits of values, samples and lobes, by lane.
+type AllBits = [([u32; 4], [u32; 11], [[u32; 5]; 4]); 8];
+
+fn all_bits(evals: &Eval8, samples: &Sample8, lobes: &PerLobe<LobeEval8>) -> AllBits {
+    core::array::from_fn(|lane| {
+        (
+            eval_bits(evals.lane(lane)),
+            sample_bits(samples, lane),
+            lobe_bits(lobes, lane),
+        )
+    })
+}
+
 /// One material and hit in all eight lanes is the same as one shared by them, bit for bit, and levels that fuse alike give
 /// the same bits.
 ///
@@ -185,60 +213,45 @@ pub fn levels_agree(subject: &dyn ErasedSubject) -> Outcome {
     let property = mixed(NAME, "lanes::levels_agree", subject, ROUNDS / 2);
     property.check([], |m, []| {
         let (wi, xi) = (packet(&m.wi), triples(&m.xi));
-        let mut by_level: Vec<(Level, Box<dyn ErasedBsdf8>)> = Vec::new();
+        let of_eight = |each: &dyn ErasedBsdf8, level| {
+            let each = each.with_level(level);
+            all_bits(&each.eval_pdf8(&wi), &each.sample8(&xi), &each.lobes8(&wi))
+        };
+        let differ = |what: String, lane: usize, level: Level| {
+            Err(Failure::new(
+                NAME,
+                format!("{what} differ: {}", m.at(lane, level)),
+            ))
+        };
+        let mut before: Option<(Level, Box<dyn ErasedBsdf8>)> = None;
         for level in Level::available() {
             let (material, hits) = (m.material(0), hits8(&[m.hits[0]; 8]));
             let packed = NamedMaterial::prepare_packed([material; 8], level, hits);
-            let shared = material.prepare8(level, hits);
-            let lane = packed.lane(3);
-            let evals = [
-                packed.with_level(level).eval_pdf8(&wi),
-                shared.with_level(level).eval_pdf8(&wi),
-                lane.with_level(level).eval_pdf8(&wi),
-            ];
-            let samples = [
-                packed.with_level(level).sample8(&xi),
-                shared.with_level(level).sample8(&xi),
-                lane.with_level(level).sample8(&xi),
-            ];
-            for n in 0..8 {
-                let e = evals.each_ref().map(|e| eval_bits(e.lane(n)));
-                let s = samples.each_ref().map(|s| sample_bits(s, n));
-                if e[0] != e[1] || e[0] != e[2] || s[0] != s[1] || s[0] != s[2] {
-                    let message = format!(
-                        "packed, shared and `lane` differ: {evals:?} {samples:?} {}",
-                        m.at(n, level)
-                    );
-                    return Err(Failure::new(NAME, message));
+            let shared = of_eight(&*material.prepare8(level, hits), level);
+            let lane = packed.lane(3).with_level(level);
+            let lane = all_bits(&lane.eval_pdf8(&wi), &lane.sample8(&xi), &lane.lobes8(&wi));
+            let packed = of_eight(&*packed, level);
+            if let Some(n) = (0..8).find(|n| packed[*n] != shared[*n] || packed[*n] != lane[*n]) {
+                return differ("packed, shared and `lane`".to_owned(), n, level);
+            }
+            let now = m.prepare(level, ORDER);
+            if let Some((other, then)) = &before
+                && other.fuses() == level.fuses()
+            {
+                let bits = [of_eight(&**then, *other), of_eight(&*now, level)];
+                let albedos = [
+                    then.with_level(*other).albedo8(),
+                    now.with_level(level).albedo8(),
+                ];
+                let same = |n: &usize| {
+                    bits[0][*n] == bits[1][*n]
+                        && albedo_bits(&albedos[0], *n) == albedo_bits(&albedos[1], *n)
+                };
+                if let Some(n) = (0..8).find(|n| !same(n)) {
+                    return differ(format!("{other} and {level}"), n, level);
                 }
             }
-            by_level.push((level, m.prepare(level, ORDER)));
-        }
-        for pair in by_level
-            .windows(2)
-            .filter(|pair| pair[0].0.fuses() == pair[1].0.fuses())
-        {
-            let [a, b] = [&pair[0], &pair[1]].map(|(level, g)| {
-                (
-                    g.with_level(*level).eval_pdf8(&wi),
-                    g.with_level(*level).sample8(&xi),
-                )
-            });
-            for n in 0..8 {
-                if eval_bits(a.0.lane(n)) != eval_bits(b.0.lane(n))
-                    || sample_bits(&a.1, n) != sample_bits(&b.1, n)
-                {
-                    return Err(Failure::new(
-                        NAME,
-                        format!(
-                            "{} and {} differ: {}",
-                            pair[0].0,
-                            pair[1].0,
-                            m.at(n, pair[1].0)
-                        ),
-                    ));
-                }
-            }
+            before = Some((level, now));
         }
         Ok(())
     })
@@ -263,22 +276,31 @@ pub fn lobes_and_albedo_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
         let each = m.prepare(level, ORDER);
         let wi = packet(&m.wi);
         let (lobes, albedo) = (each.lobes8(&wi), each.with_level(level).albedo8());
+        let unfused = Level::available().filter(|level| same_bits(&claims, *level));
+        let exact: Vec<_> = unfused
+            .map(|level| (level, each.with_level(level).albedo8()))
+            .collect();
         for lane in 0..8 {
             let at = || m.at(lane, level);
             let one = each.lane(lane);
             let (alone, one_albedo) = (one.with_level(level).lobes8(&wi), one.albedo());
-            for lobe in Lobe::ALL {
-                let bits = |l: &PerLobe<hairis::model::LobeEval8>| {
-                    let l = &l[lobe];
-                    [l.value, l.pdf, l.color[0], l.color[1], l.color[2]]
-                        .map(|x: f32x8| x.as_array()[lane].to_bits())
-                };
-                if bits(&lobes) != bits(&alone) {
+            if lobe_bits(&lobes, lane) != lobe_bits(&alone, lane) {
+                return Err(Failure::new(
+                    NAME,
+                    format!("lobes {lobes:?}, one lane {alone:?}: {}", at()),
+                ));
+            }
+            let want = one_albedo.0.map(|color| color.map(f32::to_bits));
+            for (level, albedo) in &exact {
+                if albedo_bits(albedo, lane) != want {
+                    let message = format!("bits of {albedo:?}, one lane {one_albedo:?}");
                     return Err(Failure::new(
                         NAME,
-                        format!("lobes {lobes:?}, one lane {alone:?}: {}", at()),
+                        format!("{message}: {}", m.at(lane, level)),
                     ));
                 }
+            }
+            for lobe in Lobe::ALL {
                 let one_color = alone[lobe].color.map(|color| color.as_array()[lane]);
                 for c in 0..3 {
                     let (got, want) = (

@@ -28,7 +28,7 @@
 //! # hairis_conformance::not_numbers::inputs_that_are_no_numbers_are_black(&GaussianHair).unwrap();
 //! ```
 //!
-//! The last line declares the module `published` with a `#[test]` for each property:
+//! The macro declares the module `gaussian` with a `#[test]` for each property:
 //!
 //! | test | property |
 //! |---|---|

@@ -128,7 +128,8 @@ pub fn masks_select_lobes(subject: &dyn ErasedSubject) -> Outcome {
                 part8.with_level(level).eval_pdf8(&packet(&wi)),
             );
             let at = || format!("{}, {}", subject.lobes(mask), trial.at(0, level));
-            for got in [e, eight.lane(0)] {
+            let lanes = 0..if mask == LobeMask::NONE { 8 } else { 1 };
+            for got in lanes.map(|lane| eight.lane(lane)).chain([e]) {
                 for c in 0..3 {
                     let kept = single.iter().filter(|(lobe, _)| mask.contains(*lobe));
                     let sum: f64 = kept.map(|(_, alone)| f64::from(alone.value[c])).sum();

@@ -95,13 +95,15 @@ impl Draws {
 }
 
 /// The direction at these angles, rounded.
-pub(crate) fn direction(theta: f64, phi: f64) -> Direction {
+#[must_use]
+pub fn direction(theta: f64, phi: f64) -> Direction {
     let ((sin, cos), (sin_phi, cos_phi)) = (theta.sin_cos(), phi.sin_cos());
     Direction::new(narrow(sin), narrow(cos * cos_phi), narrow(cos * sin_phi))
 }
 
 /// The vector in double precision.
-pub(crate) fn double(v: Direction) -> [f64; 3] {
+#[must_use]
+pub fn double(v: Direction) -> [f64; 3] {
     [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
 }
 
@@ -198,7 +200,8 @@ pub(crate) fn hits8(hits: &[Hit; 8]) -> Hit8 {
 }
 
 /// Eight triples of numbers as lanes.
-pub(crate) fn triples(xi: &[[f32; 3]; 8]) -> [f32x8; 3] {
+#[must_use]
+pub fn triples(xi: &[[f32; 3]; 8]) -> [f32x8; 3] {
     core::array::from_fn(|axis| f32x8::new(xi.map(|xi| xi[axis])))
 }
 

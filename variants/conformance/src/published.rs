@@ -207,17 +207,9 @@ macro_rules! published {
             faint {
                 a_faint_lobe_alone_is_sampled_as_a_bright_one a_lobe_off_the_sphere_has_the_density_it_is_drawn_with
             }
-            lobes { lobes_add_up a_subset_scatters_and_samples_its_lobes_alone a_lobe_is_colored_by_its_parameters }
-            parity {
-                every_lane_position_equals_one_lane eight_shading_points_equal_one_each one_lane_never_fuses
-                one_shading_point_in_every_lane_equals_a_shared_one permuted_lanes_permute_the_results
-                levels_agree_with_one_lane levels_that_round_alike_give_the_same_bits
-                lobes_and_albedo_agree_with_one_lane a_hit_is_its_direction
-            }
-            props {
-                finite_inputs_give_finite_outputs nothing_panics_on_nan_and_infinity a_sample_agrees_with_eval_and_pdf
-                eval_is_reciprocal every_lobe_has_a_density_of_its_own
-            }
+            lobes { lobes_add_up a_subset_scatters_its_lobes_alone a_lobe_is_colored_by_its_parameters }
+            parity { one_lane_never_fuses levels_agree_with_one_lane }
+            props { a_sample_agrees_with_eval_and_pdf }
             sampling { samples_on_the_grid samples_of_narrow_lobes samples_of_wide_lobes }
             values { values_on_the_grid values_of_narrow_lobes values_of_wide_lobes }
             $($more)*

@@ -258,7 +258,7 @@ pub fn check(subject: &dyn ErasedSubject, factor: f64) -> Outcome {
                     let bsdf = set.prepare(index, hit);
                     let apart = |count: usize, draws: &mut Draws| {
                         let resampled = resampled(count, draws);
-                        // SampleLanes for each cell alone, so that the cells' errors are independent.
+                        // Samples for each cell alone, so that the cells' errors are independent.
                         let plain = Sums::of(4 * count, || {
                             Plain {
                                 bsdf: &*bsdf,

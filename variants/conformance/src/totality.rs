@@ -6,7 +6,7 @@ use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{packet, triples};
 use hairis::model::LobeEval;
-use hairis::simd::Level;
+use hairis::simd::{Level, f32x8};
 use hairis::{Eval, Lobe, LobeMask, Sample8};
 
 const NAME: &str = "results are finite and not negative";
@@ -37,7 +37,7 @@ fn fault(
     mask: LobeMask,
     subject: &dyn ErasedSubject,
 ) -> Option<&'static str> {
-    let at = |x: &hairis::simd::f32x8| x.as_array()[lane];
+    let at = |x: &f32x8| x.as_array()[lane];
     let (value, pdf, weight, slot) = (
         s.value.each_ref().map(at),
         at(&s.pdf),
@@ -118,7 +118,16 @@ pub(crate) fn is_sound(subject: &dyn ErasedSubject, trial: &Trial<'_>) -> Outcom
             each.with_level(level).sample8(&xi8),
             one.with_level(level).sample8(&xi8),
         ];
+        let lobes = each.lobes8(&wi8).0;
         for lane in 0..8 {
+            for lobe in &lobes {
+                let at = |x: f32x8| x.as_array()[lane];
+                let lobe = LobeEval::new(at(lobe.value), lobe.color.map(at), at(lobe.pdf));
+                if !sound_lobe(&lobe) {
+                    let got = format!("{lobe:?}");
+                    return fail("a lobe", lane, &format!("eight hits {level}"), got);
+                }
+            }
             for (e, of) in evals.iter().zip(["eight hits", "one hit (that of lane 0)"]) {
                 if !sound_eval(&e.lane(lane)) {
                     return fail(

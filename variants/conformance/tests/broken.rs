@@ -1,5 +1,5 @@
-//! A sound model of two lobes, and copies of it with one fault each: the only file of these tests that implements
-//! [`Model`].
+//! A sound model of two lobes, and copies of it with one fault each; only here and in `slow` do these tests
+//! implement [`Model`].
 
 mod slow;
 mod subject;

@@ -4,6 +4,7 @@ use super::chiang::{ChiangFiber, clear, inclinations, prepare};
 use super::support::{DEG, LargestError, cdf_gap, cells, chi_square, direction, points, rule, sum};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
+use hairis_conformance::published::quadrature::gauss;
 use hairis_reference::{ChiangFormulas, Reference, Selection};
 use hairis_variants::ChiangDesc;
 use hairis_variants::chiang::ChiangParams;
@@ -279,7 +280,7 @@ fn samples_pass_chi_square_on_the_sphere() {
 #[test]
 fn few_offsets_make_the_far_field_of_rough_fibres() {
     // L1 distance, over the azimuth, of the sum of A N at Gauss nodes of h from that at many; its integral is 1.
-    let gap = |beta_n: f64, theta_o: f64, count: u32| {
+    let gap = |beta_n: f64, theta_o: f64, count: usize| {
         let p = clear(0.3, beta_n, 0.0);
         let far_field = |nodes: &[(f64, f64)]| {
             let fibers: Vec<_> = nodes
@@ -319,7 +320,7 @@ fn few_offsets_make_the_far_field_of_rough_fibres() {
         }
         // 1.7 over the scale of the logistic.
         let count = (1..)
-            .find(|n| f64::from(*n) >= 1.7 / clear(0.3, beta_n, 0.0).scale())
+            .find(|n| *n as f64 >= 1.7 / clear(0.3, beta_n, 0.0).scale())
             .unwrap();
         for theta_o in [0.0, 30.0, 60.0, 80.0] {
             let found = gap(beta_n, theta_o, count);
@@ -343,24 +344,4 @@ fn few_offsets_make_the_far_field_of_rough_fibres() {
         (0.5 * mass - 1.0).abs() < 1e-14,
         "the furnace is exact for any nodes: {mass}"
     );
-}
-
-/// Gauss and Legendre's rule of `count` points on [-1, 1].
-fn gauss(count: u32) -> Vec<(f64, f64)> {
-    let n = f64::from(count);
-    let point = |k: u32| {
-        let mut x = (PI * (f64::from(k) + 0.75) / (n + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..20 {
-            let (mut before, mut here) = (1.0, x);
-            for degree in 2..=count {
-                let d = f64::from(degree);
-                (before, here) = (here, ((2.0 * d - 1.0) * x * here - (d - 1.0) * before) / d);
-            }
-            slope = n * (x * here - before) / (x * x - 1.0);
-            x -= here / slope;
-        }
-        (x, 2.0 / ((1.0 - x * x) * slope * slope))
-    };
-    (0..count).map(point).collect()
 }

@@ -2,6 +2,7 @@
 
 use crate::erased::{Choice, Direction};
 use crate::probe::{LAST, direction, hits, masks, narrow};
+use crate::strategies::vectors;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::{Hit, LobeMask};
 use proptest::array::{uniform3, uniform8};
@@ -130,6 +131,7 @@ fn vector() -> impl Strategy<Value = Direction> {
         1 => grazing(),
         1 => (-1.6..1.6, around).prop_map(|(theta, phi)| direction(theta, phi)),
         2 => uniform3(component()).prop_map(Direction::from_array),
+        2 => vectors(),
     ]
 }
 

@@ -2,7 +2,8 @@
 
 use super::Tested;
 use super::handles::{Bsdf, Material};
-use super::support::{Draws, lanes_of, packet};
+use super::support::{Draws, lanes_of, packet, widths};
+use crate::probe::LAST;
 use core::f32::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::model::GRAZING;
@@ -10,15 +11,14 @@ use hairis::params::{HairDesc, MAX_WIDTH, MIN_WIDTH};
 use hairis::simd::Level;
 use hairis::{HairParams, Lobe, LobeMask, Sample};
 
-const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 const ENDS: [f32; 4] = [0.0, f32::EPSILON / 2.0, 0.5, LAST];
 
 fn material<'a>(tested: &'a Tested, desc: &HairDesc) -> Material<'a> {
     Material::new(tested.model(), &HairParams::new(desc).unwrap())
 }
 
-/// A sample of one lane, the same of every level if they round alike.
-fn samples(bsdf: &Bsdf, xi: [f32; 3]) -> Vec<Option<Sample>> {
+/// The sample of one lane, and of every level.
+pub(super) fn samples(bsdf: &Bsdf, xi: [f32; 3]) -> Vec<Option<Sample>> {
     let wide =
         Level::available().map(|level| bsdf.with_level(level).sample8(&lanes_of(&[xi; 8])).lane(5));
     wide.chain([bsdf.sample(xi)]).collect()
@@ -35,15 +35,6 @@ fn assert_sound(sample: &Sample, at: &str) {
         "{at}: {sample:?}"
     );
     assert!((sample.wi.length() - 1.0).abs() < 1e-6, "{at}: {sample:?}");
-}
-
-fn widths(width: f32) -> HairDesc {
-    HairDesc {
-        beta: [width; 3],
-        gamma_tt: width,
-        gamma_g: width,
-        ..*HairParams::bright().desc()
-    }
 }
 
 pub fn ends_of_xi_give_sound_samples_of_every_lobe(tested: &Tested) {

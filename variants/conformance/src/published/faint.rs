@@ -1,23 +1,17 @@
 //! Lobes next to nothing: faint ones, and those that lie off the sphere.
 
 use super::Tested;
+use super::edge::samples;
 use super::handles::{Bsdf, Material};
-use super::support::{Draws, lanes_of, packet};
+use super::support::{Draws, packet};
 use core::f32::consts::FRAC_PI_2;
 use glam::Vec3;
 use hairis::params::HairDesc;
 use hairis::simd::Level;
-use hairis::{HairParams, Lobe, LobeMask, Sample};
+use hairis::{HairParams, Lobe, LobeMask};
 
 fn bsdf(tested: &Tested, desc: &HairDesc, wo: Vec3) -> Bsdf {
     Material::new(tested.model(), &HairParams::new(desc).unwrap()).prepare(wo)
-}
-
-/// The sample of one lane, and of every level.
-fn samples(bsdf: &Bsdf, xi: [f32; 3]) -> Vec<Option<Sample>> {
-    let wide =
-        Level::available().map(|level| bsdf.with_level(level).sample8(&lanes_of(&[xi; 8])).lane(5));
-    wide.chain([bsdf.sample(xi)]).collect()
 }
 
 fn near(got: f32, want: f32, by: f32) -> bool {

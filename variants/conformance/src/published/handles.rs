@@ -11,12 +11,6 @@ use hairis::{Conserving, HairParams, Hit, Hit8, LobeMask, PerLobe, Sample8, Vec3
 pub(super) trait AnyModel {
     fn prepare(&self, params: &HairParams, hit: Hit) -> Box<dyn ErasedBsdf>;
     fn prepare8(&self, params: &HairParams, level: Level, hits: &Hit8) -> Box<dyn ErasedBsdf8>;
-    fn prepare_packed(
-        &self,
-        params: [&HairParams; 8],
-        level: Level,
-        hits: &Hit8,
-    ) -> Box<dyn ErasedBsdf8>;
     /// The constants of a shading point, by the function for one lane and by that for lanes.
     fn constants(&self, params: &HairParams, hit: Hit) -> [String; 2];
     /// Albedo of hair that conserves energy.
@@ -41,20 +35,6 @@ impl<M: Model<Params = HairParams> + 'static> AnyModel for M {
 
     fn prepare8(&self, params: &HairParams, level: Level, hits: &Hit8) -> Box<dyn ErasedBsdf8> {
         Box::new(material(self, params).with_level(level).prepare8(hits))
-    }
-
-    fn prepare_packed(
-        &self,
-        params: [&HairParams; 8],
-        level: Level,
-        hits: &Hit8,
-    ) -> Box<dyn ErasedBsdf8> {
-        let materials = params.map(|params| material(self, params));
-        Box::new(
-            hairis::Material8::pack(materials.each_ref())
-                .with_level(level)
-                .prepare8(hits),
-        )
     }
 
     fn constants(&self, params: &HairParams, hit: Hit) -> [String; 2] {
@@ -143,21 +123,8 @@ impl<'a> Material<'a> {
         self
     }
 
-    pub(super) fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8 {
+    pub(super) fn prepare8(&self, hits: impl Into<Hit8>) -> Box<dyn ErasedBsdf8> {
         self.model.prepare8(&self.params, self.level, &hits.into())
-    }
-
-    /// Eight hits on eight materials of one model.
-    pub(super) fn prepare_packed(
-        materials: [&Self; 8],
-        level: Level,
-        hits: impl Into<Hit8>,
-    ) -> Bsdf8 {
-        materials[0].model.prepare_packed(
-            materials.map(|material| &material.params),
-            level,
-            &hits.into(),
-        )
     }
 
     pub(super) fn max_albedo(&self) -> f32 {
@@ -171,5 +138,3 @@ impl<'a> Material<'a> {
 
 /// A BSDF.
 pub(super) type Bsdf = Box<dyn ErasedBsdf>;
-/// Eight BSDFs.
-pub(super) type Bsdf8 = Box<dyn ErasedBsdf8>;

@@ -7,15 +7,15 @@ use std::sync::LazyLock;
 /// about 1e-10 of its mass.
 pub const POINTS: usize = 12;
 
-/// Node and weight on [-1, 1], by Newton's method on the Legendre polynomial.
-static RULE: LazyLock<[(f64, f64); POINTS]> = LazyLock::new(|| {
-    let n = POINTS as f64;
-    core::array::from_fn(|k| {
+/// Gauss and Legendre's rule of so many points: nodes and weights on [-1, 1], by Newton's method on the polynomial.
+pub fn gauss(count: usize) -> Vec<(f64, f64)> {
+    let n = count as f64;
+    let point = |k: usize| {
         let mut x = (PI * (k as f64 + 0.75) / (n + 0.5)).cos();
         let mut slope = 1.0;
         for _ in 0..20 {
             let (mut before, mut here) = (1.0, x);
-            for degree in 2..=POINTS {
+            for degree in 2..=count {
                 let d = degree as f64;
                 (before, here) = (here, ((2.0 * d - 1.0) * x * here - (d - 1.0) * before) / d);
             }
@@ -23,8 +23,12 @@ static RULE: LazyLock<[(f64, f64); POINTS]> = LazyLock::new(|| {
             x -= here / slope;
         }
         (x, 2.0 / ((1.0 - x * x) * slope * slope))
-    })
-});
+    };
+    (0..count).map(point).collect()
+}
+
+/// The rule of a panel.
+static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| gauss(POINTS));
 
 /// Ends of panels on `[lo, hi]` for bells given as (peak, width): at each peak, and at 1, 2, 4 ... widths from it.
 pub fn panels(lo: f64, hi: f64, bells: &[(f64, f64)]) -> Vec<f64> {
@@ -47,7 +51,7 @@ pub fn panels(lo: f64, hi: f64, bells: &[(f64, f64)]) -> Vec<f64> {
 pub fn rule(ends: &[f64]) -> Vec<(f64, f64)> {
     let panel = |ends: &[f64]| {
         let (middle, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
-        RULE.map(|(x, w)| (middle + half * x, w * half))
+        RULE.iter().map(move |(x, w)| (middle + half * x, w * half))
     };
     ends.windows(2).flat_map(panel).collect()
 }

@@ -28,8 +28,6 @@ pub struct Rows {
     pub wide_cdf: [f64; 2],
     /// A level that fuses against one lane that does not, wide lobes off the seam and the axis: S, density, direction.
     pub levels: [f64; 3],
-    /// Albedo of eight lanes against one.
-    pub albedo_lanes: f64,
     /// Directional albedo of a lobe against quadrature, relative.
     pub albedo: f64,
     /// Directional albedo of a lobe of any width, seen from further than 1e-5 rad from the axis, relative to at least 1e-9.

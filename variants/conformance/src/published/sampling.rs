@@ -3,12 +3,11 @@
 use super::Tested;
 use super::support::{Draws, Kind, Point, angles, double, for_each_point, lanes_of};
 use crate::comparison::{LargestError, relative};
+use crate::probe::LAST;
 use core::f64::consts::PI;
 use hairis::simd::Level;
 use hairis::{Lobe, LobeMask, Sample};
 use hairis_reference::Reference;
-
-const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// Eight triples: uniform numbers, with the ends of their range in between.
 fn draw8(draws: &mut Draws) -> [[f32; 3]; 8] {

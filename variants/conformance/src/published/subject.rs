@@ -1,6 +1,6 @@
 //! The family as subjects of the suite.
 
-use super::support::{double, oracle, parameters};
+use super::support::{double, oracle, parameters, widths};
 use super::{FamilyModel, formulas};
 use crate::probe::{angles, narrow};
 use crate::strategies;
@@ -21,15 +21,6 @@ impl<P> Family<P> {
     #[must_use]
     pub const fn new() -> Self {
         Self(PhantomData)
-    }
-}
-
-fn widths(width: f32) -> HairDesc {
-    HairDesc {
-        beta: [width; 3],
-        gamma_tt: width,
-        gamma_g: width,
-        ..*HairParams::bright().desc()
     }
 }
 

@@ -1,13 +1,12 @@
 //! Shared by the tests: numbers, directions, materials, and the reference set beside the kernels.
 
-pub use crate::probe::{Draws, narrow};
+pub use crate::probe::{Draws, direction, double, narrow, triples as lanes_of};
 
 use super::Tested;
 use super::handles::Material;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::params::{HairDesc, MAX_WIDTH, MIN_WIDTH};
-use hairis::simd::f32x8;
 use hairis::{HairParams, Vec3x8};
 use hairis_reference::{HairFormulas, Reference};
 
@@ -93,17 +92,6 @@ impl Draws {
     }
 }
 
-/// The direction at these angles, rounded.
-pub fn direction(theta: f64, phi: f64) -> Vec3 {
-    let (s, c) = theta.sin_cos();
-    Vec3::new(narrow(s), narrow(c * phi.cos()), narrow(c * phi.sin()))
-}
-
-/// The vector in double precision.
-pub fn double(v: Vec3) -> [f64; 3] {
-    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
-}
-
 /// Inclination, and azimuth relative to `wo` folded into `[0, pi]`.
 pub fn angles(wo: Vec3, wi: Vec3) -> [f64; 2] {
     let ([_, v_o, w_o], [u, v, w]) = (double(wo), double(wi));
@@ -145,16 +133,20 @@ pub enum Kind {
     Wide,
 }
 
+/// The default hair with every width this, rad.
+pub(super) fn widths(width: f32) -> HairDesc {
+    HairDesc {
+        beta: [width; 3],
+        gamma_tt: width,
+        gamma_g: width,
+        ..*HairParams::bright().desc()
+    }
+}
+
 /// The materials of one kind.
 pub fn materials(kind: Kind) -> Vec<HairParams> {
     let uniform = |deg: f64| {
-        let width = narrow(deg * DEG);
-        let widths = HairDesc {
-            beta: [width; 3],
-            gamma_tt: width,
-            gamma_g: width,
-            ..*HairParams::bright().desc()
-        };
+        let widths = widths(narrow(deg * DEG));
         let tilted = HairDesc {
             alpha: [0.2, -0.15, -0.35],
             phi_g: 0.7,
@@ -270,9 +262,4 @@ impl Point {
 /// Eight lanes of a list, which is repeated where it is short.
 pub fn packet(v: &[Vec3]) -> Vec3x8 {
     core::array::from_fn::<Vec3, 8, _>(|lane| v[lane % v.len()]).into()
-}
-
-/// Eight triples of uniform numbers as lanes.
-pub fn lanes_of(xi: &[[f32; 3]; 8]) -> [f32x8; 3] {
-    core::array::from_fn(|axis| f32x8::new(xi.map(|xi| xi[axis])))
 }

@@ -3,14 +3,13 @@
 
 use super::Tested;
 use super::handles::Material;
-use super::support::{DEG, angles, direction, double, lanes_of, narrow, oracle};
+use super::support::{DEG, angles, direction, double, lanes_of, narrow, oracle, widths};
 use crate::comparison::{LargestError, relative};
+use crate::probe::LAST;
 use core::f64::consts::PI;
 use hairis::params::HairDesc;
 use hairis::simd::Level;
 use hairis::{HairParams, Lobe};
-
-const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// Numbers next to the ends of their range, and some between.
 const NUMBERS: [f32; 15] = [
@@ -90,17 +89,11 @@ fn errors(
 /// Every width a degree or a little more.
 fn degrees() -> Vec<HairDesc> {
     let default = *HairParams::bright().desc();
-    let of = |width: f32| HairDesc {
-        beta: [width; 3],
-        gamma_tt: width,
-        gamma_g: width,
-        ..default
-    };
     let mut all = Vec::new();
     for base in [
-        of(narrow(DEG)),
-        of(0.019_24),
-        of(0.05),
+        widths(narrow(DEG)),
+        widths(0.019_24),
+        widths(0.05),
         HairDesc {
             beta: [0.019_24, default.beta[1], default.beta[2]],
             ..default

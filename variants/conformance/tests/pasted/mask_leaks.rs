@@ -10,7 +10,7 @@
         tolerances: true,
     });
     case.rows[0] = Row {
-        material: Params { fault: 1065353223, kd: [0.0, 0.0, 0.9196575], ks: [0.0, 0.0, 0.0], width: 1.0 },
+        material: Params { fault: 1065353223, kd: [0.0, 0.0, 0.0], ks: [0.0, 0.0, 0.0], width: 1.0 },
         hit: Hit::new(Vec3::new(0.0, 1.0, 0.0), 0.0),
         wi: Vec3::new(0.0, 1.0, 0.0),
         xi: [0.0, 0.0, 0.0],

@@ -9,10 +9,10 @@
         xi: [0.0, 0.0, 0.0],
         tolerances: true,
     });
-    case.rows[7] = Row {
+    case.rows[5] = Row {
         material: subject.materials().swap_remove(0).1,
         hit: Hit::new(Vec3::new(0.0, 1.0, 0.0), 0.0),
-        wi: Vec3::new(1.0, 0.0, 0.0),
+        wi: Vec3::new(0.0, 0.0, 1e30),
         xi: [0.0, 0.0, 0.0],
         tolerances: true,
     };
