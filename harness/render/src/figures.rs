@@ -14,7 +14,7 @@ mod tests;
 mod verdict;
 
 use crate::args::Figures;
-use crate::cmd::environment;
+use crate::cmd::{environment, print};
 use crate::hair::Choice;
 use crate::scenes::Name;
 use hairis_instruments::error::Error;
@@ -25,7 +25,6 @@ use hairis_variants::ModelId;
 use measure::{Measured, Plan};
 use models::Preset;
 use std::fs;
-use std::io::{self, Write as _};
 use std::path::Path;
 use store::Store;
 
@@ -159,13 +158,10 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     }
     bar.finish_and_clear();
     if let Some(shard) = flags.shard {
-        let line = format!(
+        return print(&format!(
             "shard {shard}: measurements are in {}\n",
             store.folder().display()
-        );
-        return io::stdout()
-            .write_all(line.as_bytes())
-            .map_err(Error::Write);
+        ));
     }
     let mut lines = String::new();
     for measured in &all {
@@ -183,9 +179,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         "wrote {}\n",
         flags.out.join("report.html").display()
     ));
-    io::stdout()
-        .write_all(lines.as_bytes())
-        .map_err(Error::Write)
+    print(&lines)
 }
 
 /// Hair with other values, which its name tells.

@@ -23,6 +23,7 @@ pub use mesh::{Head, import_head, import_head_bytes};
 pub use mitsuba::write_mitsuba;
 
 use crate::geometry::Strands;
+use crate::part::digest;
 use bytes::Bytes;
 use clap::ValueEnum;
 use format::Format;
@@ -96,16 +97,18 @@ pub struct Imported {
     pub remarks: Vec<String>,
 }
 
-/// Reads a file of hair. Its format is that of the content; the ending of the name decides where
-/// the content fits several.
+/// Reads a file of hair, and returns the hair with a digest of the bytes that were read: a pipe can
+/// be read only once. Its format is that of the content; the ending of the name decides where the
+/// content fits several.
 ///
 /// # Errors
 ///
 /// If the file cannot be read, or anything that is needed is not as its format has it; see
 /// [`Problem`]. No file makes this panic, or take more memory than 64 times its length, times the
 /// strands that follow each.
-pub fn import(path: &Path, options: &Import) -> Result<Imported, ImportError> {
-    import_bytes(path, &read(path)?, options)
+pub fn import(path: &Path, options: &Import) -> Result<(Imported, u64), ImportError> {
+    let data = read(path)?;
+    Ok((import_bytes(path, &data, options)?, digest(&data)))
 }
 
 /// Reads what a file of this name holds.

@@ -1,6 +1,7 @@
 //! `hairis-render fit`.
 
 use super::place::{Ground, choices};
+use super::print;
 use crate::args::Fit as Flags;
 use crate::film::{Film, Picture};
 use crate::fit::{Fit, FitSettings, Target, fit};
@@ -16,10 +17,11 @@ use hairis_instruments::program::say;
 use hairis_instruments::progress::{share_bar, show_share};
 use hairis_instruments::table::{Table, number};
 use hairis_materials::material::values_json;
+use hairis_variants::Field;
 use image::{Rgb, RgbImage};
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{self, Write as _};
+use std::io::Write as _;
 use std::path::Path;
 
 /// Samples of a pixel of the pictures before and after.
@@ -87,8 +89,7 @@ pub(super) fn run(flags: &Flags) -> Result<(), Error> {
     let exposure = flags.exposure.unwrap_or_else(|| picture::exposure(&target));
     write_pictures(&[before, after, target], exposure, &pictures)?;
     let text = table(&found).to_text(None);
-    let out = format!("{text}wrote {}\n", material.display());
-    io::stdout().write_all(out.as_bytes()).map_err(Error::Write)
+    print(&format!("{text}wrote {}\n", material.display()))
 }
 
 /// The material that the flags begin with.
@@ -110,6 +111,21 @@ fn start(flags: &Flags) -> Result<Choice, Error> {
                 "{flag} must be one of {}, the fields of {}, got {name}",
                 known.join(", "),
                 start.id.name()
+            )));
+        }
+        let given = |field: &&Field| start.values.has(field.name);
+        let is_missing = |field: &&Field| names.contains(&field.name.to_owned()) && !given(field);
+        if let Some(field) = fields.iter().find(is_missing) {
+            let head = |field: &Field| field.instead_of.unwrap_or(field.name);
+            let is_instead = |other: &&Field| given(other) && head(other) == head(field);
+            let instead = fields.iter().find(is_instead).map(|other| {
+                let name = other.name;
+                format!("; give {name}, which the start has in its place")
+            });
+            return Err(Error::Usage(format!(
+                "{flag} must be a field that the start has, got {}{}",
+                field.name,
+                instead.unwrap_or_default()
             )));
         }
     }

@@ -1,5 +1,6 @@
 //! `hairis-render merge`.
 
+use super::print;
 use super::render::{check_out, finish};
 use crate::args::Merge;
 use crate::layers::Beside;
@@ -19,5 +20,6 @@ pub(super) fn run(flags: &Merge) -> Result<(), Error> {
         .map(|path| Ok((path.clone(), Part::read(path)?)))
         .collect::<Result<_, Error>>()?;
     let Part { run, film, .. } = Part::merge(parts)?;
-    finish(&film, &Beside::film(&film, &run), &flags.out, None)
+    let wrote = finish(&film, &Beside::film(&film, &run), &flags.out, None)?;
+    print(&wrote)
 }

@@ -22,6 +22,8 @@ const MODEL: &str = "gaussian";
 pub(super) struct Ground {
     pub(super) strands: Strands,
     head: Option<Head>,
+    /// Digests of the files of hair and head, 0 without a file.
+    pub(super) digests: [u64; 2],
     pub(super) env: Option<Environment>,
 }
 
@@ -35,23 +37,28 @@ impl Ground {
         let pixels = pixels as u64;
         let read = |path| environment(path, flags.layer.as_deref());
         let env = flags.env.as_deref().map(read).transpose()?;
-        let (strands, head) = match &flags.import {
+        let (strands, head, digests) = match &flags.import {
             Some(path) => {
-                let Imported { strands, scale, .. } = read_hair(flags, path)?;
-                let head = read_head(flags, &strands, scale)?;
+                let (Imported { strands, scale, .. }, hair_digest) = read_hair(flags, path)?;
+                let (head, head_digest) = read_head(flags, &strands, scale)?;
                 let triangles = head.as_ref().map_or(0, Head::triangles);
                 memory::check((strands.segments() + triangles) as u64, pixels)?;
-                (strands, head)
+                (strands, head, [hair_digest, head_digest])
             }
             None => {
                 memory::check(
                     scenes::estimate_segments(flags.scene, flags.strands)?,
                     pixels,
                 )?;
-                (scenes::grow(flags.scene, flags.strands)?, None)
+                (scenes::grow(flags.scene, flags.strands)?, None, [0; 2])
             }
         };
-        Ok(Self { strands, head, env })
+        Ok(Self {
+            strands,
+            head,
+            digests,
+            env,
+        })
     }
 
     /// The scene with this hair, for a picture of this size.
@@ -115,8 +122,8 @@ pub(crate) fn environment(path: &Path, layer: Option<&str>) -> Result<Environmen
     Ok(map)
 }
 
-/// Reads hair, and remarks on what is odd about it.
-fn read_hair(flags: &Place, path: &Path) -> Result<Imported, Error> {
+/// Reads hair with the digest of its file, and remarks on what is odd about it.
+fn read_hair(flags: &Place, path: &Path) -> Result<(Imported, u64), Error> {
     let follow = Follow {
         strands: flags.follow,
         spread: flags.spread,
@@ -128,7 +135,8 @@ fn read_hair(flags: &Place, path: &Path) -> Result<Imported, Error> {
         curve: flags.curve,
         follow,
     };
-    let imported = import(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
+    let (imported, digest) =
+        import(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
     for remark in &imported.remarks {
         say(&format!("{}: {remark}", path.display()));
     }
@@ -138,24 +146,25 @@ fn read_hair(flags: &Place, path: &Path) -> Result<Imported, Error> {
             path.display()
         )));
     }
-    Ok(imported)
+    Ok((imported, digest))
 }
 
-/// The head under hair from a file of this scale, if flags ask for one.
-fn read_head(flags: &Place, strands: &Strands, scale: f32) -> Result<Option<Head>, Error> {
+/// The head under hair from a file of this scale, if flags ask for one, with the digest of its file.
+fn read_head(flags: &Place, strands: &Strands, scale: f32) -> Result<(Option<Head>, u64), Error> {
     if flags.scalp.is_some() {
         let fit = scalp::fit(strands).map_err(Error::Usage)?;
         say(&fit.to_string());
-        return Ok(Some(Head::ellipsoid(fit.ellipsoid)));
+        return Ok((Some(Head::ellipsoid(fit.ellipsoid)), 0));
     }
     let Some(path) = &flags.head else {
-        return Ok(None);
+        return Ok((None, 0));
     };
     let options = formats::Head {
         scale: flags.head_scale.unwrap_or(scale),
         up: flags.up,
     };
-    let mesh = import_head(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
+    let (mesh, digest) =
+        import_head(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
     let [head, hair] = [mesh.bounds(), strands.bounds()].map(|bounds| bounds.size().length());
     if !(0.1..=10.0).contains(&(head / hair)) {
         say(&format!(
@@ -165,5 +174,5 @@ fn read_head(flags: &Place, strands: &Strands, scale: f32) -> Result<Option<Head
             options.scale
         ));
     }
-    Ok(Some(Head::mesh(mesh)))
+    Ok((Some(Head::mesh(mesh)), digest))
 }

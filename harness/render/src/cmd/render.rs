@@ -3,6 +3,7 @@
 mod description;
 
 use super::place::{Ground, choices};
+use super::print;
 use crate::args::Render;
 use crate::film::{self, Crop, Film};
 use crate::formats::write_hair;
@@ -25,7 +26,6 @@ use hairis_instruments::program::say;
 use hairis_instruments::progress::{share_bar, show_share};
 use hairis_instruments::shard::Shard;
 use std::fs;
-use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -64,8 +64,8 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     if let Some(path) = &flags.export {
         whole(path, |out| write_hair(path, &ground.strands, out))?;
     }
-    let describe = |hair: &Named| describe(flags, &hair.line, &settings, crop, ground.env.as_ref());
-    let runs = hairs.iter().map(describe).collect::<Result<Vec<_>, _>>()?;
+    let describe = |hair: &Named| describe(flags, &hair.line, &settings, crop, &ground);
+    let runs: Vec<String> = hairs.iter().map(describe).collect();
     let mut scene = ground.scene(&flags.place, hairs[0].hair, flags.size.0)?;
     outs.iter().try_for_each(|out| check_out(out))?;
     let interrupt = Interrupt::watch();
@@ -115,9 +115,11 @@ fn picture(
     if let Some(lost) = transport::cut_off(scene, settings, &part.film).filter(CutOff::is_notable) {
         say(&lost.to_string());
     }
-    if flags.profile {
-        writeln!(io::stdout(), "time: {}", part.film.profile).map_err(Error::Write)?;
-    }
+    let profile = if flags.profile {
+        format!("time: {}\n", part.film.profile)
+    } else {
+        String::new()
+    };
     let mut log = saver.end();
     if flags.shard.is_some() {
         log.write(&part)?;
@@ -125,32 +127,30 @@ fn picture(
             // Ignore errors: a short run has left none.
             let _ = fs::remove_file(part_path.with_extension(preview));
         }
-        let line = format!(
-            "wrote {}: join the parts by `hairis-render merge`\n",
+        return print(&format!(
+            "{profile}wrote {}: join the parts by `hairis-render merge`\n",
             part_path.display()
-        );
-        return io::stdout()
-            .write_all(line.as_bytes())
-            .map_err(Error::Write);
+        ));
     }
-    finish(
+    let wrote = finish(
         &part.film,
         &Beside::film(&part.film, &part.run),
         out,
         flags.exposure,
     )?;
-    // A larger --spp goes on from it.
+    // A larger --spp goes on from it. Marked before anything is printed, because printing may fail.
     part.finished = true;
-    log.write(&part)
+    log.write(&part)?;
+    print(&format!("{profile}{wrote}"))
 }
 
-/// Writes a picture that is whole, and says so.
+/// Writes a picture that is whole, and returns the line that says so.
 pub(super) fn finish(
     film: &Film,
     beside: &Beside,
     out: &Path,
     exposure: Option<f64>,
-) -> Result<(), Error> {
+) -> Result<String, Error> {
     let picture = film.picture();
     picture::write(
         &picture,
@@ -160,13 +160,10 @@ pub(super) fn finish(
     )?;
     let [r, g, b] = picture.mean();
     let (samples, seconds) = (film.samples(), film.seconds());
-    let line = format!(
+    Ok(format!(
         "wrote {}: {samples} samples, mean {r:.5} {g:.5} {b:.5}, {seconds:.1} s of CPU time\n",
         out.display()
-    );
-    io::stdout()
-        .write_all(line.as_bytes())
-        .map_err(Error::Write)
+    ))
 }
 
 /// Hair of a picture.

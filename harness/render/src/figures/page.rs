@@ -5,7 +5,7 @@ use super::measure::{BySampler, Measured, Plan, SAMPLERS};
 use super::models::{self, Preset};
 use super::panel::{Column, crops, panel};
 use super::rates;
-use super::verdict::{self, BELOW, Gain, MEASURES, gain, headline, sentence, visible};
+use super::verdict::{self, BELOW, Gain, MEASURES, best, gain, headline, sentence, visible};
 use crate::args::Figures;
 use crate::film::Crop;
 use crate::lights::RectangleSampling;
@@ -80,7 +80,10 @@ fn page(
             "Scenes of direct light have one fixed shading point per pixel, and as many light as BSDF samples there; all pictures, \
              and the reference, share the camera rays. In scenes of paths, each sample has a camera ray of its own.",
         )
-        .paragraph("Visible: the share of rays towards lights that reach them, with light and BSDF samples of `matched`.")
+        .paragraph(format!(
+            "Visible: the share of rays towards lights that reach them, with light and BSDF samples of {}.",
+            best(all)
+        ))
         .paragraph(
             "relMSE is the mean of (a − b)² / (b² + (0.1 mean)²) in luminance; the noise of the reference, known from two \
              halves of it, is subtracted. Uniform sampling has few pixels of very large error, so that its relMSE is uncertain: \
@@ -145,14 +148,6 @@ fn other<'a>(measured: &'a Measured, name: &str) -> Option<&'a BySampler> {
         return None;
     };
     others.iter().find(|one| one.name == name)
-}
-
-/// Names of the samplers that others are compared with.
-fn best(all: &[Measured]) -> String {
-    let mut names: Vec<&str> = all.iter().map(Measured::best).collect();
-    names.sort_unstable();
-    names.dedup();
-    names.join(" or ")
 }
 
 /// Names the points that a chart leaves out.
@@ -400,11 +395,14 @@ fn table(measured: &Measured) -> Table {
         "relMSE",
         "trimmed relMSE",
         "variance per sample",
-        "MSE, relative to matched",
-        "MSE × time, relative to matched",
-        "relMSE × time, relative to matched",
-        "trimmed relMSE × time, relative to matched",
     ]);
+    let errors = [
+        "MSE",
+        "MSE × time",
+        "relMSE × time",
+        "trimmed relMSE × time",
+    ];
+    table = table.numbers(errors.map(|error| format!("{error}, relative to {}", measured.best())));
     for sampler in &measured.samplers {
         for (place, runs) in sampler.runs.iter().enumerate() {
             let best = measured

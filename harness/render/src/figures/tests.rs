@@ -2,12 +2,15 @@
 
 use super::measure::{Measured, Plan, preset};
 use super::models::Preset;
+use super::page;
 use super::store::Store;
+use crate::args::{Args, Command};
 use crate::hair::Choice;
 use crate::lights::RectangleSampling;
 use crate::protocol::Runs;
 use crate::scenes::Name;
 use crate::transport::Integrator;
+use clap::Parser as _;
 use core::cell::Cell;
 use core::panic::AssertUnwindSafe;
 use hairis_instruments::interrupt::{Interrupt, Signal};
@@ -228,6 +231,21 @@ fn hair_of_any_model_is_measured_with_its_own_samplers() {
         (first.title().as_str(), first.best()),
         ("area-head (mine)", "published")
     );
+    // No sampler of another model is on the page.
+    let Command::Figures(flags) = Args::parse_from(["hairis-render", "figures"]).command else {
+        panic!("the flags of figures")
+    };
+    page::write(
+        core::slice::from_ref(&first),
+        &[],
+        &TINY,
+        &flags,
+        folder.path(),
+    )
+    .expect("written");
+    let page = std::fs::read_to_string(folder.path().join("report.html")).expect("written");
+    assert!(page.contains("relMSE × time, relative to published"));
+    assert!(!page.contains("matched"), "{page}");
     let (again, resumed) = render(&material("[0.5,0.2]"));
     assert!(resumed > 0 && results(&again) == results(&first));
     // Another material of the same name shares nothing.

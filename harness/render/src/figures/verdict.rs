@@ -175,6 +175,14 @@ fn listed(names: &[&str]) -> String {
     }
 }
 
+/// Names of the samplers that others are compared with.
+pub(super) fn best(all: &[Measured]) -> String {
+    let mut names: Vec<&str> = all.iter().map(Measured::best).collect();
+    names.sort_unstable();
+    names.dedup();
+    names.join(" or ")
+}
+
 /// The scenes where the sampler does not matter, and the rule.
 pub(super) fn scenes(all: &[Measured]) -> String {
     let (yes, no): (Vec<&Measured>, Vec<&Measured>) =
@@ -187,9 +195,10 @@ pub(super) fn scenes(all: &[Measured]) -> String {
         listed(&titles.iter().map(String::as_str).collect::<Vec<&str>>())
     };
     let rule = format!(
-        "Rule: with uniform and published directions, error × time is {} that with matched ones, by MSE and by trimmed relMSE, \
-         with two standard errors to spare.",
-        within()
+        "Rule: with every sampler but {RESAMPLED}, error × time is {} that with {}, by MSE and by trimmed relMSE, with two standard \
+         errors to spare.",
+        within(),
+        best(all)
     );
     match (no.as_slice(), yes.as_slice()) {
         ([], _) => format!("In none of these scenes. {rule}"),

@@ -1,8 +1,11 @@
 //! The picture that is fitted.
 
-use crate::cmd::picture_size;
 use crate::film::{Crop, Picture};
-use exr::prelude::{AttributeValue, FlatSamples, Text, read_first_flat_layer_from_file};
+use exr::block;
+use exr::meta::header::Header;
+use exr::prelude::{AttributeValue, FlatSamples, ReadChannels as _, ReadLayers as _, Text, read};
+use std::fs::File;
+use std::io::BufReader;
 use std::path::Path;
 
 /// Pixels to each side whose mean weighs a pixel: few enough to follow the light, and enough that the noise of the pixel itself
@@ -71,10 +74,22 @@ impl Target {
     ///
     /// If it cannot be read, has no such channels or pixels that are not finite, or reaches beyond its display window.
     pub fn read(path: &Path) -> Result<Self, String> {
-        let image = read_first_flat_layer_from_file(path).map_err(|problem| {
+        let unreadable = |problem: exr::error::Error| {
             let line = problem.to_string().replace(['\n', '\r'], " ");
             format!("cannot read: {line}")
-        })?;
+        };
+        let file = File::open(path).map_err(|problem| unreadable(problem.into()))?;
+        let chunks = block::read(BufReader::new(file), false).map_err(unreadable)?;
+        // Decoding takes memory for every pixel of the data window, which the header alone states.
+        let (crop, size) = windows(&chunks.headers()[0])?;
+        let image = read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .first_valid_layer()
+            .all_attributes()
+            .from_chunks(chunks)
+            .map_err(unreadable)?;
         let layer = &image.layer_data;
         let channels = &layer.channel_data.list;
         let channel = |name: &str| {
@@ -85,52 +100,8 @@ impl Target {
             })
         };
         let rgb = [channel("R")?, channel("G")?, channel("B")?];
-        let window = image.attributes.display_window;
-        let side = |pixels: usize| {
-            u32::try_from(pixels).ok().filter(|_| pixels <= LONGEST).ok_or_else(|| {
-                format!("the sides of the display window must have at most {LONGEST} pixels, got {pixels}")
-            })
-        };
-        let size = [side(window.size.width())?, side(window.size.height())?];
-        let corner = layer.attributes.layer_position - window.position;
-        let (width, height) = (layer.size.width(), layer.size.height());
-        let within = |from: i32, count: usize, all: u32| {
-            let from = u32::try_from(from).ok()?;
-            let count = u32::try_from(count).ok()?;
-            from.checked_add(count).filter(|end| *end <= all)?;
-            Some((from, count))
-        };
-        let (Some((x, width)), Some((y, height))) = (
-            within(corner.x(), width, size[0]),
-            within(corner.y(), height, size[1]),
-        ) else {
-            return Err(format!(
-                "the data window must lie within the display window of {} x {} pixels, got {width} x {height} from {} {}",
-                size[0],
-                size[1],
-                corner.x(),
-                corner.y()
-            ));
-        };
-        let crop = Crop {
-            x,
-            y,
-            width,
-            height,
-        };
-        if let Some((one, name)) = rgb
-            .iter()
-            .zip(["R", "G", "B"])
-            .find(|(one, _)| one.len() != crop.len())
-        {
-            return Err(format!(
-                "{name} must have a sample per pixel, {}, got {}: write every channel in full",
-                crop.len(),
-                one.len()
-            ));
-        }
         let picture = Picture {
-            size: [width, height],
+            size: [crop.width, crop.height],
             pixels: (0..crop.len())
                 .map(|place| rgb.map(|samples| number(samples, place)))
                 .collect(),
@@ -139,8 +110,6 @@ impl Target {
             Some(AttributeValue::Text(text)) => Some(text.to_string()),
             _ => None,
         };
-        // Files of this renderer say how large the picture is that they are a part of.
-        let size = run.as_deref().and_then(picture_size).unwrap_or(size);
         Ok(Self {
             run,
             ..Self::new(&picture, crop, size)?
@@ -188,6 +157,45 @@ impl Target {
         };
         expected.iter().filter_map(differs).collect()
     }
+}
+
+/// The part of the picture in the data window, and the size of the display window, which is the whole picture.
+fn windows(header: &Header) -> Result<(Crop, [u32; 2]), String> {
+    let display = header.shared_attributes.display_window;
+    let side = |pixels: usize| {
+        u32::try_from(pixels).ok().filter(|_| pixels <= LONGEST).ok_or_else(|| {
+            format!("the sides of the display window must have at most {LONGEST} pixels, got {pixels}")
+        })
+    };
+    let size = [side(display.size.width())?, side(display.size.height())?];
+    let data = header.data_window();
+    let corner = data.position - display.position;
+    let (width, height) = (data.size.width(), data.size.height());
+    let within = |from: i32, count: usize, all: u32| {
+        let from = u32::try_from(from).ok()?;
+        let count = u32::try_from(count).ok()?;
+        from.checked_add(count).filter(|end| *end <= all)?;
+        Some((from, count))
+    };
+    let (Some((x, width)), Some((y, height))) = (
+        within(corner.x(), width, size[0]),
+        within(corner.y(), height, size[1]),
+    ) else {
+        return Err(format!(
+            "the data window must lie within the display window of {} x {} pixels, got {width} x {height} from {} {}",
+            size[0],
+            size[1],
+            corner.x(),
+            corner.y()
+        ));
+    };
+    let crop = Crop {
+        x,
+        y,
+        width,
+        height,
+    };
+    Ok((crop, size))
 }
 
 fn number(samples: &FlatSamples, place: usize) -> f64 {

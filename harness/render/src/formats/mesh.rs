@@ -5,6 +5,7 @@ use super::ply::{self, Ply};
 use super::ply_strands::Vertices;
 use super::{ImportError, Problem, Up, Wrong, check_option, read};
 use crate::geometry::Mesh;
+use crate::part::digest;
 use glam::Vec3;
 use std::path::Path;
 
@@ -17,14 +18,16 @@ pub struct Head {
     pub up: Up,
 }
 
-/// Reads a mesh of triangles or polygons, PLY or OBJ by its content.
+/// Reads a mesh of triangles or polygons, PLY or OBJ by its content, and returns the mesh with a
+/// digest of the bytes that were read, as [`import`](super::import) does.
 ///
 /// # Errors
 ///
 /// If the file cannot be read, or anything that is needed is not as its format has it; see
 /// [`Problem`].
-pub fn import_head(path: &Path, options: &Head) -> Result<Mesh, ImportError> {
-    import_head_bytes(path, &read(path)?, options)
+pub fn import_head(path: &Path, options: &Head) -> Result<(Mesh, u64), ImportError> {
+    let data = read(path)?;
+    Ok((import_head_bytes(path, &data, options)?, digest(&data)))
 }
 
 /// Reads what a file of this name holds.

@@ -185,15 +185,11 @@ impl Point {
                     *origin,
                     candidate.direction,
                     candidate.cos,
+                    candidate.distance,
                 );
                 let sample = radiances.next();
-                if sees(
-                    scene,
-                    &Ray {
-                        t_max: candidate.distance,
-                        ..ray
-                    },
-                ) && let Some(sample) = sample
+                if sees(scene, &ray)
+                    && let Some(sample) = sample
                 {
                     *sample += count * radiance;
                 }
@@ -222,16 +218,15 @@ impl Point {
             let eval = eval.lane(lane);
             let weight = settings.mis.of_light(light.pdf, eval.pdf) * cos / light.pdf;
             let radiance = light.radiance * Vec3::from_array(eval.value) * weight;
-            let ray = leave(scene, &self.hit, self.origin, light.direction, cos);
-            if radiance.max_element() > 0.0
-                && sees(
-                    scene,
-                    &Ray {
-                        t_max: light.distance,
-                        ..ray
-                    },
-                )
-            {
+            let ray = leave(
+                scene,
+                &self.hit,
+                self.origin,
+                light.direction,
+                cos,
+                light.distance,
+            );
+            if radiance.max_element() > 0.0 && sees(scene, &ray) {
                 *sum += radiance;
             }
         }
@@ -265,16 +260,15 @@ impl Point {
             let weight = settings.mis.of_bsdf(pdf, light.pdf);
             let of_bsdf = Vec3::from_array([0, 1, 2].map(|c| sample.weight[c].as_array()[lane]));
             let radiance = light.radiance * of_bsdf * weight;
-            let ray = leave(scene, &self.hit, self.origin, light.direction, cos);
-            if radiance.max_element() > 0.0
-                && sees(
-                    scene,
-                    &Ray {
-                        t_max: light.distance,
-                        ..ray
-                    },
-                )
-            {
+            let ray = leave(
+                scene,
+                &self.hit,
+                self.origin,
+                light.direction,
+                cos,
+                light.distance,
+            );
+            if radiance.max_element() > 0.0 && sees(scene, &ray) {
                 *sum += radiance;
             }
         }

@@ -235,11 +235,8 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
                     origins[lane],
                     candidate.direction,
                     candidate.cos,
+                    candidate.distance,
                 );
-                let ray = Ray {
-                    t_max: candidate.distance,
-                    ..ray
-                };
                 shadows.push(Shadow {
                     ray,
                     radiance: path.throughput * radiance,
@@ -264,11 +261,14 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
                 let radiance =
                     path.throughput * light.radiance * Vec3::from_array(eval.value) * weight;
                 if radiance.max_element() > 0.0 {
-                    let ray = leave(scene, hit, origins[lane], light.direction, cos[lane]);
-                    let ray = Ray {
-                        t_max: light.distance,
-                        ..ray
-                    };
+                    let ray = leave(
+                        scene,
+                        hit,
+                        origins[lane],
+                        light.direction,
+                        cos[lane],
+                        light.distance,
+                    );
                     shadows.push(Shadow {
                         ray,
                         radiance,
@@ -296,6 +296,7 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
                 origins[lane],
                 directions.lane(lane).normalize_or(Vec3::Y),
                 cos[lane],
+                f32::INFINITY,
             );
             path.from_hair = true;
         }
@@ -303,7 +304,7 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
     }
 }
 
-/// A ray that leaves a fibre, in a direction of inclination `cos_theta`.
+/// A ray that leaves a fibre, in a direction of inclination `cos_theta`, and ends at a distance.
 #[inline]
 pub(super) fn leave(
     scene: &Scene,
@@ -311,9 +312,11 @@ pub(super) fn leave(
     origin: Vec3,
     direction: Vec3,
     cos_theta: f32,
+    distance: f32,
 ) -> Ray {
     let radius = scene.strands.radius(hit.segment, hit.s);
     Ray {
+        t_max: distance,
         skip: Some(Skip::leaving(
             hit.strand,
             radius,

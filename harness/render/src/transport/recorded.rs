@@ -5,7 +5,6 @@ use super::wave::{Shadow, Wave};
 use super::{Mis, Settings, sees};
 use crate::film::Crop;
 use crate::scene::Scene;
-use crate::tree::Ray;
 use glam::Vec3;
 use hairis::Vec3x8;
 use hairis_instruments::direction::cosine;
@@ -220,10 +219,14 @@ fn hair(
                 let radiance = path.throughput * light.radiance * weight;
                 let mut chain = chains[path.slot as usize];
                 chain.push(pair(lane, &wi));
-                let ray = Ray {
-                    t_max: light.distance,
-                    ..leave(scene, hit, origins[lane], light.direction, cos[lane])
-                };
+                let ray = leave(
+                    scene,
+                    hit,
+                    origins[lane],
+                    light.direction,
+                    cos[lane],
+                    light.distance,
+                );
                 let slot = path.slot;
                 let shadow = Shadow {
                     ray,
@@ -251,6 +254,7 @@ fn hair(
                 origins[lane],
                 directions.lane(lane).normalize_or(Vec3::Y),
                 cos[lane],
+                f32::INFINITY,
             );
             path.from_hair = true;
             chains[path.slot as usize].push(pair(lane, &sample.wi));

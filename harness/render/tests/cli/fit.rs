@@ -2,9 +2,11 @@
 
 use super::{refuse, run, succeed};
 use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, IntegerBounds, Layer, LayerAttributes,
-    Vec2, WritableImage as _,
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, IntegerBounds, Layer,
+    LayerAttributes, Vec2, WritableImage as _,
 };
+use hairis_render::film::Crop;
+use hairis_render::fit::Target;
 use std::fs;
 use tempfile::TempDir;
 
@@ -103,7 +105,8 @@ fn light_that_a_fit_does_not_follow_is_remarked() {
     );
 }
 
-/// Writes a picture of one value per channel, with the corner of its data window, in a display window of 8 x 8 pixels.
+/// Writes a picture of one value per channel, with the corner of its data window, in a display window of 8 x 8 pixels. Its
+/// attribute `run` is that of a larger picture.
 fn write(folder: &TempDir, name: &str, channels: &[(&str, f32)], corner: [i32; 2]) {
     let channel = |(name, value): &(&str, f32)| {
         let mut pixels = vec![0.5; 64];
@@ -117,10 +120,45 @@ fn write(folder: &TempDir, name: &str, channels: &[(&str, f32)], corner: [i32; 2
         AnyChannels::sort(channels.iter().map(channel).collect()),
     ));
     image.attributes.display_window = IntegerBounds::from_dimensions(Vec2(8, 8));
+    let run = AttributeValue::Text("size=64x64 crop=0,0,64,64".into());
+    image.layer_data.attributes.other.insert("run".into(), run);
     image
         .write()
         .to_file(folder.path().join(name))
         .expect("written");
+}
+
+/// Writes a copy of `a.exr` with another value of an attribute that is a window.
+fn with_window(folder: &TempDir, name: &str, attribute: &str, window: [i32; 4]) {
+    let mut bytes = fs::read(folder.path().join("a.exr")).expect("written");
+    let head = [attribute.as_bytes(), b"\0box2i\0\x10\0\0\0"].concat();
+    let start = bytes.windows(head.len()).position(|at| at == head);
+    let start = start.expect("an attribute") + head.len();
+    for (place, side) in window.into_iter().enumerate() {
+        bytes[start + 4 * place..][..4].copy_from_slice(&side.to_le_bytes());
+    }
+    fs::write(folder.path().join(name), bytes).expect("written");
+}
+
+/// A picture is as large as its windows are, whatever attributes say that a program has kept which made it smaller.
+#[test]
+fn windows_say_how_large_a_target_is() {
+    let folder = TempDir::new().expect("a folder");
+    let read = |name: &str| {
+        let target = Target::read(&folder.path().join(name)).expect("a picture");
+        (target.size(), target.crop())
+    };
+    let grey = [("R", 0.5), ("G", 0.5), ("B", 0.5)];
+    write(&folder, "small.exr", &grey, [0, 0]);
+    assert_eq!(read("small.exr"), ([8; 2], Crop::whole([8; 2])));
+    render(&folder, &["--spp", "1", "--out", "part.exr"]);
+    let part = Crop {
+        x: 20,
+        y: 12,
+        width: 24,
+        height: 16,
+    };
+    assert_eq!(read("part.exr"), ([64; 2], part));
 }
 
 #[test]
@@ -128,6 +166,9 @@ fn bad_targets_and_flags_are_refused_in_one_line() {
     let folder = TempDir::new().expect("a folder");
     let grey = [("R", 0.5), ("G", 0.5), ("B", 0.5)];
     write(&folder, "a.exr", &grey, [0, 0]);
+    // More pixels than any memory holds.
+    with_window(&folder, "wide.exr", "displayWindow", [0, 0, 1 << 29, 0]);
+    with_window(&folder, "vast.exr", "dataWindow", [0, 0, 1 << 29, 7]);
     write(&folder, "y.exr", &[("Y", 0.5)], [0, 0]);
     write(
         &folder,
@@ -149,6 +190,7 @@ fn bad_targets_and_flags_are_refused_in_one_line() {
         [material, material].concat(),
     )
     .expect("written");
+    fs::write(folder.path().join("one.json"), material).expect("written");
     for (flags, words) in [
         (
             &["--target", "none.exr"][..],
@@ -171,6 +213,14 @@ fn bad_targets_and_flags_are_refused_in_one_line() {
             &["--target", "outside.exr"],
             &["outside.exr", "8 x 8", "from 3 0"],
         ),
+        (
+            &["--target", "wide.exr"],
+            &["wide.exr", "display window", "16384", "got 536870913"],
+        ),
+        (
+            &["--target", "vast.exr"],
+            &["vast.exr", "data window", "8 x 8", "got 536870913 x 8"],
+        ),
         (&["--model", "phong"], &["phong", "gaussian"]),
         (&["--hair", "green"], &["green", "blond"]),
         (
@@ -178,6 +228,14 @@ fn bad_targets_and_flags_are_refused_in_one_line() {
             &["--fix", "beta", "gaussian", "got width"],
         ),
         (&["--free", "width"], &["--free", "beta", "got width"]),
+        (
+            &["--material", "one.json", "--fix", "sigma_a"],
+            &["--fix", "got sigma_a", "give melanin, which"],
+        ),
+        (
+            &["--material", "one.json", "--free", "color"],
+            &["--free", "got color", "give melanin, which"],
+        ),
         (&["--depth", "3"], &["--depth", "1 or 2", "got 3"]),
         (&["--spp", "3"], &["--spp", "even", "got 3"]),
         (&["--iterations", "1"], &["--iterations", "got 1"]),

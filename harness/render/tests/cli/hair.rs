@@ -1,7 +1,10 @@
 //! Hair of one's own: materials of files, and parameters on top of presets.
 
 use super::{SMALL, channels, refuse, render, run};
+use hairis_render::part::Part;
 use std::fs;
+use std::io::pipe;
+use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
 const CHIANG: &str =
@@ -109,6 +112,57 @@ fn several_materials_are_several_pictures() {
     ];
     render(&folder, &single);
     assert_eq!(channels(&folder, "b.exr"), pictures[1]);
+}
+
+#[test]
+fn what_becomes_of_standard_output_does_not_matter_to_files() {
+    let folder = folder();
+    let run_into = |out: Stdio, flags: &[&str]| -> Output {
+        Command::new(env!("CARGO_BIN_EXE_hairis-render"))
+            .args(flags)
+            .stdout(out)
+            .stderr(Stdio::piped())
+            .current_dir(folder.path())
+            .spawn()
+            .and_then(|child| child.wait_with_output())
+            .expect("it runs")
+    };
+    let closed = || {
+        let (_, writer) = pipe().expect("a pipe");
+        Stdio::from(writer)
+    };
+    let is_finished = |part: &str| {
+        Part::read(&folder.path().join(part))
+            .expect("a part")
+            .finished
+    };
+    let flags = |more: &[&'static str]| {
+        let base = ["render", "furnace-one", "--spp", "1", "--profile"];
+        [&base, &SMALL[..], more].concat()
+    };
+    let both = ["--material", "a/mine.json", "--material", "b/mine.json"];
+    let shard = ["--out", "s.exr", "--shard", "1/1"];
+    for flags in [
+        flags(&[&both[..], &["--out", "p.exr"]].concat()),
+        flags(&shard),
+        vec!["merge", "s.exr", "s.1-of-1.part"],
+    ] {
+        let output = run_into(closed(), &flags);
+        assert!(output.status.success(), "{flags:?}: {output:?}");
+    }
+    assert!(is_finished("p-mine.part") && is_finished("p-mine-2.part"));
+    for name in ["p-mine.exr", "p-mine-2.exr", "s.exr"] {
+        assert!(folder.path().join(name).exists(), "{name}");
+    }
+    // A disk that is full is an error, after everything is written.
+    #[cfg(target_os = "linux")]
+    {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full");
+        let output = run_into(full.expect("there").into(), &flags(&["--out", "full.exr"]));
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{errors}");
+        assert!(is_finished("full.part") && folder.path().join("full.exr").exists());
+    }
 }
 
 #[test]

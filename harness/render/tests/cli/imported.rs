@@ -1,5 +1,7 @@
 //! Hair from a file on a head, by the command line.
 
+#[cfg(unix)]
+use super::{channels, succeed};
 use super::{refuse, run};
 use std::fs;
 use tempfile::TempDir;
@@ -123,5 +125,64 @@ fn heads_are_refused_in_one_line() {
     ] {
         let all = [&["render", "env"], flags].concat();
         assert_eq!(run(&folder, &all).status.code(), Some(2), "{flags:?}");
+    }
+}
+
+/// A pipe is read once: another hair or head behind the same name is another picture.
+#[cfg(unix)]
+#[test]
+fn files_from_a_pipe_are_told_apart() {
+    use std::io::{Write as _, pipe};
+    let folder = TempDir::new().expect("a folder");
+    dome(&folder);
+    let path = |name: &str| folder.path().join(name);
+    let double = |name: &str, from: &str, to: &str| {
+        let text = fs::read_to_string(path(name)).expect("written");
+        let other = format!("other-{name}");
+        fs::write(path(&other), text.replace(from, to)).expect("written");
+        other
+    };
+    let hairs = [
+        "dome.txt".to_owned(),
+        double("dome.txt", " 0.2\n", " 0.4\n"),
+    ];
+    let heads = ["head.obj".to_owned(), double("head.obj", "9.9", "7.9")];
+    let base = [
+        "render",
+        "env",
+        "--integrator",
+        "direct",
+        "--spp",
+        "1",
+        "--size",
+        "16x16",
+    ];
+    for (first, flag, files) in [
+        (&[][..], "--import", hairs),
+        (&["--import", "dome.txt"], "--head", heads),
+    ] {
+        for file in files {
+            let flags = |name| [&base, first, &[flag, name]].concat();
+            let (reader, mut writer) = pipe().expect("a pipe");
+            // Short enough for the pipe to hold all of it.
+            let content = fs::read(path(&file)).expect("written");
+            writer.write_all(&content).expect("written");
+            drop(writer);
+            let output = std::process::Command::new(env!("CARGO_BIN_EXE_hairis-render"))
+                .args([&flags("/dev/stdin")[..], &["--out", "piped.exr"]].concat())
+                .current_dir(folder.path())
+                .stdin(reader)
+                .output()
+                .expect("it starts");
+            assert!(output.status.success(), "{flag} {file}: {output:?}");
+            succeed(
+                &folder,
+                &[&flags(&file)[..], &["--out", "named.exr"]].concat(),
+            );
+            assert!(
+                channels(&folder, "piped.exr") == channels(&folder, "named.exr"),
+                "{flag} {file}"
+            );
+        }
     }
 }

@@ -1,27 +1,21 @@
 //! The line that tells runs apart.
 
 use crate::args::{Place, Render, Size};
+use crate::cmd::place::Ground;
 use crate::film::Crop;
-use crate::part::{build, digest};
+use crate::part::build;
 use crate::transport::Settings;
-use hairis_instruments::error::Error;
 use hairis_instruments::light::Environment;
-use std::fs;
-use std::path::PathBuf;
 
 /// Everything that the sums of a picture depend on, but for the count of samples and the shard: parts of equal lines may be
 /// continued and joined. `hair` is what it depends on of the hair.
-///
-/// # Errors
-///
-/// If the file of hair cannot be read.
 pub(super) fn describe(
     flags: &Render,
     hair: &str,
     settings: &Settings,
     crop: Crop,
-    env: Option<&Environment>,
-) -> Result<String, Error> {
+    ground: &Ground,
+) -> String {
     // Without `..`: whoever adds a flag decides whether it shapes the sums.
     let Render {
         place,
@@ -49,12 +43,10 @@ pub(super) fn describe(
     let Place {
         scene,
         strands,
-        import,
         scale,
         radius,
         up,
         curve,
-        head,
         head_scale,
         scalp,
         follow,
@@ -63,7 +55,9 @@ pub(super) fn describe(
         backdrop,
         rectangles,
         meet,
-        // In the environment.
+        // In the digests of what was read.
+        import: _,
+        head: _,
         env: _,
         layer: _,
     } = place;
@@ -84,14 +78,8 @@ pub(super) fn describe(
         width,
         height,
     } = crop;
-    let content = |path: &Option<PathBuf>| -> Result<u64, Error> {
-        let Some(path) = path else { return Ok(0) };
-        let unreadable =
-            |source| Error::Usage(format!("{}: cannot read: {source}", path.display()));
-        Ok(digest(&fs::read(path).map_err(unreadable)?))
-    };
-    let (file, mesh) = (content(import)?, content(head)?);
-    let env = env.map_or(0, Environment::digest);
+    let [file, mesh] = ground.digests;
+    let env = ground.env.as_ref().map_or(0, Environment::digest);
     let words = [
         format!("scene={scene:?} {hair}"),
         format!(
@@ -104,7 +92,7 @@ pub(super) fn describe(
         format!("depth={depth:?} roulette={roulette} multiple={multiple} aa={rays}"),
         build(),
     ];
-    Ok(words.join(" "))
+    words.join(" ")
 }
 
 /// Width and height of the whole picture, out of the line that [`describe`] makes.
