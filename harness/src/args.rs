@@ -28,12 +28,13 @@ The answer to "wi", and to "xi" (lobe null: discarded, and 0 for the rest):
 The answer to a refused line, a blank one included, is {"error":"field: problem"}. The other lines still
 run, and the exit code is 2."#;
 
-const STUDY: &str =
-    "Files in DIR: report.html, and its plots in figures/; study.csv, the rows, which depend on the seed and the build
-alone; difference.csv, how different the models look; materials.csv, the rows of --model and --material; study.json,
-the settings; times.csv and efficiency.csv, which
-depend on the machine as well. With the features `parquet` and `png` of the build: the tables as .parquet, the plots as
-.png. Finished cells are kept in DIR/cells-I-of-N.jsonl: the same command continues from there.";
+const STUDY: &str = "\
+Files in DIR: report.html, and its plots in figures/; study.csv, the rows, which depend on the
+seed and the build alone; difference.csv, how different the models look; refitted.csv, the Cauchy
+model fitted to each hair; materials.csv, the rows of --model and --material; study.json, the
+settings; times.csv and efficiency.csv, which depend on the machine as well. With the features
+`parquet` and `png` of the build: study, efficiency and difference as .parquet, the plots as .png.
+Finished cells are kept in DIR/cells-I-of-N.jsonl: the same command continues from there.";
 
 const SHADER: &str = "\
 Every file has the presets of the model as functions without arguments: hairis_gaussian_material_brown(). `exact` is the
@@ -48,7 +49,7 @@ const FIT: &str = "\
 Standard output has the fitted material, as `hairis eval` reads it. Files in DIR: fitted.json, the same; fit.json, the distance by
 view, by lobe and by start; report.html, and its plots in figures/. The same flags give the same values.
 
-  hairis fit --from gaussian --preset brown --to cauchy > brown.json
+  hairis fit --from gaussian --preset brown --to cauchy > soft.json
   hairis fit --material mine.json --to chiang --norm l2 --fix eta";
 
 /// The subcommands, each with its flags.
@@ -287,7 +288,7 @@ pub struct Fit {
     /// Inclination of a view, in degrees; may be repeated [default: eight views of equal solid angle]
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub theta_o_deg: Vec<f64>,
-    /// Weight of each view of --theta-o-deg, in their order [default: 1 each]
+    /// Weight of each view of --theta-o-deg, in their order; ratios alone count [default: 1 each]
     #[arg(long, value_name = "X", requires = "theta_o_deg")]
     pub weight: Vec<f64>,
     /// Field of the second model that keeps its value of the start; may be repeated

@@ -241,11 +241,15 @@ mod tests {
     use hairis_instruments::direction::fibre_direction;
     use hairis_instruments::quadrature::{SphereIntegrator, Tolerance};
     use hairis_reference::{HairReference, Reference};
+    use std::sync::LazyLock;
+
+    static QUICK: LazyLock<Difference> = LazyLock::new(|| {
+        Difference::over(Grid::QUICK, &Journal::default(), &|_, _| ()).expect("accepted")
+    });
 
     #[test]
     fn the_best_factors_are_the_best_in_their_norm() {
-        let found =
-            Difference::over(Grid::QUICK, &Journal::default(), &|_, _| ()).expect("accepted");
+        let found = &*QUICK;
         assert_eq!(found.rows.len(), Grid::QUICK.len() * Width::ALL.len());
         let squares = |width| {
             found
@@ -274,8 +278,7 @@ mod tests {
 
     #[test]
     fn no_refit_is_further_away_than_a_factor() {
-        let found =
-            Difference::over(Grid::QUICK, &Journal::default(), &|_, _| ()).expect("accepted");
+        let found = &*QUICK;
         let views = Grid::QUICK.theta_o_deg.len() * Width::ALL.len();
         for rows in found.rows.chunks(views) {
             // The light that is elsewhere, from all inclinations.

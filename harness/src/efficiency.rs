@@ -47,8 +47,12 @@ pub use result::{
 };
 pub use run::run;
 
+#[cfg(test)]
+pub(crate) use case::Case;
 pub(crate) use measure::{bias_z, is_tested};
 pub(crate) use reference::stratified;
+#[cfg(test)]
+pub(crate) use reference::{by_quadrature, perfect_v, ray_v};
 pub(crate) use run::z_bound;
 
 use crate::lights::Lights;
@@ -56,8 +60,6 @@ use crate::sampler::Sampler;
 use crate::subject::ModelKind;
 use hairis::params::HairDesc;
 use hairis::{HairParams, ParamError};
-#[cfg(test)]
-use hairis_instruments::light::Light;
 use hairis_instruments::sequence::stream_id;
 use hairis_instruments::stats::Estimate;
 use serde::Serialize;
@@ -214,40 +216,6 @@ pub(crate) fn with_beta(base: &HairParams, beta_r_deg: f32) -> Result<HairParams
         beta: [beta_r, 0.5 * beta_r, 2.0 * beta_r],
         ..*base.desc()
     })
-}
-
-/// Mean and V of a model under a light that quadrature can integrate, seen from [`PHI_O_DEG`].
-#[cfg(test)]
-pub(crate) fn quadrature(
-    model: ModelKind,
-    params: &HairParams,
-    theta_o_deg: f64,
-    light: &dyn Light,
-) -> Reference {
-    reference::by_quadrature(&case::Case::new(model, params, theta_o_deg), light)
-}
-
-/// V of perfect sampling of the model under such a light.
-#[cfg(test)]
-pub(crate) fn perfect_v(
-    model: ModelKind,
-    params: &HairParams,
-    theta_o_deg: f64,
-    light: &dyn Light,
-) -> f64 {
-    reference::perfect_v(&case::Case::new(model, params, theta_o_deg), light)
-}
-
-/// V of one ray by one-sample MIS, and that of a ray from `n + n` candidates times `n`, under such a light.
-#[cfg(test)]
-pub(crate) fn ray_v(
-    model: ModelKind,
-    params: &HairParams,
-    theta_o_deg: f64,
-    light: &dyn Light,
-    sampler: Sampler,
-) -> [f64; 2] {
-    reference::ray_v(&case::Case::new(model, params, theta_o_deg), light, sampler)
 }
 
 /// The mean of a colour, on which all figures are based.

@@ -145,35 +145,19 @@ pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: &[[f32; 3]]) 
 mod tests {
     use super::*;
     use hairis_instruments::markup::well_formed;
-    use hairis_instruments::plot::{Bar, bars, heat_map};
-    use hairis_instruments::report::{Report, Section};
-    use hairis_instruments::table::{Table, number};
+    use hairis_instruments::sequence::{SequenceKind, XiSource as _};
     use hairis_variants::Cauchy;
 
     fn default_hair() -> HairParams {
         HairParams::new(HairParams::bright().desc()).expect("the default is legal")
     }
 
-    fn halton(n: u32) -> Vec<[f32; 3]> {
-        (1..=n)
-            .map(|i| [2_u32, 3, 5].map(|base| radical_inverse(i, base)))
-            .collect()
-    }
-
-    fn radical_inverse(mut i: u32, base: u32) -> f32 {
-        let (mut value, mut place) = (0.0, 1.0_f32);
-        while i > 0 {
-            place /= base as f32;
-            value += place * (i % base) as f32;
-            i /= base;
-        }
-        value
-    }
-
     fn all() -> Vec<Drawing> {
         let params = default_hair();
         let theta_o = 20.0_f64.to_radians();
-        let samples = sample_distributions(&params, theta_o, &halton(2000));
+        let mut numbers = SequenceKind::Halton.source(1, 0, 3, 2000);
+        let xi: Vec<[f32; 3]> = (0..2000).map(|_| numbers.next_xi_f32()).collect();
+        let samples = sample_distributions(&params, theta_o, &xi);
         let [area, peak] = bells();
         vec![
             area,
@@ -215,160 +199,6 @@ mod tests {
                 figure.svg.len(),
                 figure.caption
             );
-        }
-    }
-
-    /// Writes a page with every kind of chart; set `HAIRIS_GALLERY` to a folder to look at it.
-    #[test]
-    fn a_gallery_of_every_chart_is_a_page() {
-        let n = |i: i32| 4.0_f64.powi(i);
-        let exact = |value: f64, error: f64| Bar {
-            value,
-            low: value - error,
-            high: value + error,
-        };
-        let decay = |c: f64| {
-            (1..9)
-                .map(move |i| (n(i), c / n(i).sqrt()))
-                .map(|(n, e)| (n, exact(e, 0.12 * e)))
-        };
-        let names = [
-            "uniform",
-            "published",
-            "matched",
-            "light",
-            "MIS",
-            "quasi-MC",
-        ];
-        let mut series: Vec<Series> = (0..)
-            .zip(names)
-            .map(|(i, name)| Series::new(name, decay(1.0 / n(i).sqrt())))
-            .collect();
-        series.push(Series::guide(
-            "slope −1/2",
-            [(4.0, 0.6), (4096.0, 0.6 / 32.0)],
-        ));
-        let chart = lines(
-            "Convergence (made up)",
-            Axis::log("samples N"),
-            Axis::log("relative RMS error"),
-            &series,
-        );
-        let interval = |y: f64| Bar {
-            value: y,
-            low: y - 0.2,
-            high: y + 0.1,
-        };
-        let band = (0..50)
-            .map(|i| f64::from(i) / 10.0)
-            .map(|x| (x, interval(x.sin())));
-        let band = [
-            Series::new("sine", band),
-            Series::guide("zero", [(0.0, 0.0), (5.0, 0.0)]),
-        ];
-        let bands = lines(
-            "Intervals (made up)",
-            Axis::linear("x (rad)"),
-            Axis::linear("y"),
-            &band,
-        );
-        let bar = |v: &f64| exact(*v, 0.04 * v);
-        let made_up =
-            |title: &str, axis: Axis, groups: &[&str], rows: &[(&str, &[f64])], level: f64| {
-                let groups: Vec<String> = groups.iter().map(|group| (*group).to_owned()).collect();
-                let series: Vec<(String, Vec<Bar>)> = rows
-                    .iter()
-                    .map(|(name, values)| ((*name).to_owned(), values.iter().map(bar).collect()))
-                    .collect();
-                bars(title, axis, &groups, &series, level)
-            };
-        let speed = made_up(
-            "Speed (made up)",
-            Axis::linear("speed relative to scalar (×)"),
-            &[
-                "eval",
-                "sample",
-                "sample and eval, one shading point",
-                "prepare",
-            ],
-            &[
-                ("8 lanes, portable", &[2.1, 2.4, 2.2, 1.4]),
-                ("8 lanes, AVX2 and FMA", &[7.4, 6.1, 6.6, 3.9]),
-                ("batch", &[7.9, 6.6, 7.0, 4.2]),
-            ],
-            1.0,
-        );
-        let variance = made_up(
-            "Variance (made up)",
-            Axis::log("V (relative variance)"),
-            &["0°", "45°", "75°"],
-            &[
-                ("uniform", &[0.706, 0.931, 2.268]),
-                ("published", &[0.209, 0.189, 0.290]),
-                ("matched", &[0.018, 0.009, 0.006]),
-            ],
-            0.0,
-        );
-        let bsdf = AnyMaterial::from(Material::new(&Published(Gaussian), &default_hair()))
-            .prepare(fibre_direction(0.35, 0.0).as_vec3());
-        let grid = SphereGrid::sample((90, 180), &mut |theta, phi| reflected(&bsdf, theta, phi));
-        let heat = heat_map(
-            "S cos θᵢ of the default hair, θₒ = 20°",
-            Axis::linear("S cos θᵢ (1/sr)"),
-            &grid,
-        );
-        let heat_log = heat_map(
-            "The same, logarithmic",
-            Axis::log("S cos θᵢ (1/sr)").range(1e-4, 2.0),
-            &grid,
-        );
-        let numbers = ["θₒ = 0°", "θₒ = 45°", "θₒ = 75°", "gain over uniform"];
-        let mut table = Table::new("Relative variance V under constant light")
-            .texts(["sampler"])
-            .numbers(numbers);
-        for (sampler, v, gain) in [
-            ("uniform", [0.706, 0.931, 2.268], 1.0),
-            ("published", [0.209, 0.189, 0.29], 7.82),
-        ] {
-            let cells = v.map(|v| number::with_error(v, 0.005 * v));
-            table.push(
-                [sampler.to_owned()]
-                    .into_iter()
-                    .chain(cells)
-                    .chain([number::ratio(gain)]),
-            );
-        }
-        let table = table.note("2²⁰ samples a cell; ± is one standard error.");
-        let charts = [chart, bands, speed, variance, heat, heat_log]
-            .map(|svg| Drawing::new("", svg, "Made up."));
-        let text = "Some text that is long enough to fill more than a line, so that its measure can be judged on screens of any width.";
-        let page = Report {
-            title: "hairis: scalar against SIMD, Gaussian against Cauchy".to_owned(),
-            subtitle: "A gallery".to_owned(),
-            findings: vec!["Eight lanes are 7.1× as fast as one (`sample`, AVX2).".to_owned()],
-            sections: vec![
-                Section::new("Variance").paragraph(text).tables([table]),
-                Section::new("Figures")
-                    .paragraph("Every kind of chart.")
-                    .figures(all())
-                    .figures(charts),
-                Section::new("Method").facts(&[["CPU", "Example CPU @ 3.00 GHz"]]),
-            ],
-            ..Report::default()
-        }
-        .html();
-        well_formed(&page).expect("the page nests");
-        let folder = tempfile::tempdir().expect("a folder");
-        let folder =
-            std::env::var_os("HAIRIS_GALLERY").map_or(folder.path().to_owned(), Into::into);
-        std::fs::write(folder.join("gallery.html"), &page).expect("the page is written");
-        for (i, part) in page.split("<svg ").skip(1).enumerate() {
-            let svg = part.split_once("</svg>").expect("an end").0;
-            std::fs::write(
-                folder.join(format!("{}.svg", i + 1)),
-                format!("<svg {svg}</svg>\n"),
-            )
-            .expect("written");
         }
     }
 }

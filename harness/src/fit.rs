@@ -68,7 +68,7 @@ pub struct FitConfig {
     pub norm: Norm,
     /// Inclinations of the viewer, rad, within (-pi/2, pi/2).
     pub views: Vec<f64>,
-    /// Weight of each view.
+    /// Weight of each view, above 0. Ratios of weights alone count.
     pub weights: Vec<f64>,
     /// Fields whose values stay those of the start.
     pub fixed: Vec<String>,

@@ -69,6 +69,21 @@ impl MaterialKey {
     }
 }
 
+/// The first entry of a model's name.
+///
+/// # Errors
+///
+/// [`Error::Usage`] if there is no such model.
+pub(crate) fn find_model(flag: &str, name: &str) -> Result<ModelId, Error> {
+    ModelId::find(name, None).ok_or_else(|| {
+        let names: Vec<&str> = ModelId::defaults_of_names().map(ModelId::name).collect();
+        Error::Usage(format!(
+            "{flag} must be one of {}, got {name:?}",
+            names.join(", ")
+        ))
+    })
+}
+
 /// Materials by the names of models and by files. A model stands for each of its presets.
 ///
 /// # Errors
@@ -77,14 +92,7 @@ impl MaterialKey {
 pub fn of_flags(models: &[String], paths: &[PathBuf]) -> Result<Vec<NamedMaterial>, Error> {
     let mut all: Vec<(String, ModelId, Values)> = Vec::new();
     for name in models {
-        let Some(model) = ModelId::find(name, None) else {
-            let names = ModelId::defaults_of_names().map(ModelId::name);
-            let names: Vec<&str> = names.collect();
-            return Err(Error::Usage(format!(
-                "--model must be one of {}, got {name}",
-                names.join(", ")
-            )));
-        };
+        let model = find_model("--model", name)?;
         let presets = model.presets();
         all.extend(presets.map(|(preset, values)| (format!("{name}-{preset}"), model, values)));
     }

@@ -10,7 +10,9 @@ mod study;
 
 use crate::cases::Case;
 use serde_json::{Value, json};
+use std::fs;
 use std::io::Write;
+use std::path::Path;
 #[cfg(unix)]
 use std::process::Child;
 use std::process::{Command, Output, Stdio};
@@ -121,6 +123,16 @@ fn with_xi(mut request: Value, xi: [f64; 3]) -> Value {
     request.as_object_mut().unwrap().remove("wi");
     request["xi"] = json!(xi);
     request
+}
+
+/// Names of the files in a folder, sorted.
+fn names(dir: &Path) -> Vec<String> {
+    let entries = fs::read_dir(dir).unwrap();
+    let mut names: Vec<_> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
 }
 
 fn numbers(value: &Value) -> Vec<f64> {

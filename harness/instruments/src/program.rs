@@ -87,6 +87,19 @@ fn remark_on_threads(wanted: &OsStr, cores: usize) -> Option<String> {
     }
 }
 
+/// Prints on standard output. A reader that leaves early, as `head` does, is no error.
+///
+/// # Errors
+///
+/// [`Error::Write`] for anything else.
+pub fn print(text: impl AsRef<[u8]>) -> Result<(), Error> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_ref()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::Write(error)),
+        _ => Ok(()),
+    }
+}
+
 /// Prints a line on standard error. Ignores write errors. Control characters, which names of files may have, are escaped.
 pub fn say(line: &str) {
     let mut text = String::new();

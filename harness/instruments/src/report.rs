@@ -1,7 +1,7 @@
 //! The report: one self-contained HTML page, without scripts.
 
 use crate::error::Error;
-use crate::files::whole;
+use crate::files::{whole, writable};
 use crate::markup::escape;
 #[cfg(feature = "png")]
 use crate::plot::png;
@@ -12,6 +12,10 @@ use std::io::Write;
 use std::path::Path;
 
 const STYLE: &str = include_str!("report/style.css");
+/// File of the page.
+const PAGE: &str = "report.html";
+/// Folder of the figures.
+const FIGURES: &str = "figures";
 
 /// A page: verdicts and one plot, then findings, then sections of plots with their tables folded away.
 ///
@@ -195,6 +199,18 @@ impl Report {
         self.summary.iter().chain(figures)
     }
 
+    /// Checks that [`write`](Self::write) can write into `dir`, before the work for the report begins. Makes the folder `figures`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Output`] for the page, the folder or a figure.
+    pub fn writable(dir: &Path) -> Result<(), Error> {
+        let folder = dir.join(FIGURES);
+        fs::create_dir_all(&folder).map_err(Error::output(&folder))?;
+        writable(&dir.join(PAGE))?;
+        writable(&folder.join("figure.svg"))
+    }
+
     /// Writes the page to `report.html` in `dir`, and every figure to `figures/NAME-NUMBER-....svg`, with feature `png` to
     /// `.png` too, each as a whole or not at all.
     ///
@@ -202,10 +218,8 @@ impl Report {
     ///
     /// [`Error::Output`] for one that cannot be written.
     pub fn write(&self, dir: &Path, name: &str) -> Result<(), Error> {
-        whole(&dir.join("report.html"), |out| {
-            out.write_all(self.html().as_bytes())
-        })?;
-        let folder = dir.join("figures");
+        whole(&dir.join(PAGE), |out| out.write_all(self.html().as_bytes()))?;
+        let folder = dir.join(FIGURES);
         fs::create_dir_all(&folder).map_err(Error::output(&folder))?;
         let figures: Vec<(usize, &Drawing)> = (1..).zip(self.figures()).collect();
         figures.par_iter().try_for_each(|(number, figure)| {
@@ -362,6 +376,13 @@ mod tests {
         report
             .sections
             .push(Section::new("s").figures([Drawing::new("last", svg.clone(), "c")]));
+        Report::writable(dir.path()).expect("a new folder");
+        let count = |name: &str| {
+            fs::read_dir(dir.path().join(name))
+                .expect("a folder")
+                .count()
+        };
+        assert_eq!([count(""), count("figures")], [1, 0], "no file is left");
         report.write(dir.path(), "example").expect("written");
         let read = |name: &str| fs::read(dir.path().join(name)).expect("there");
         assert_eq!(read("report.html"), report.html().as_bytes());
@@ -371,10 +392,20 @@ mod tests {
             !has_png || read("figures/example-02.png").starts_with(b"\x89PNG"),
             "a PNG beside each SVG"
         );
-        let files = fs::read_dir(dir.path().join("figures"))
-            .expect("a folder")
-            .count();
-        assert_eq!(files, if has_png { 8 } else { 4 });
+        assert_eq!(count("figures"), if has_png { 8 } else { 4 });
+    }
+
+    #[test]
+    fn reports_that_cannot_be_written_are_refused() {
+        let dir = tempfile::TempDir::new().expect("a folder");
+        let at = |name: &str| dir.path().join(name);
+        fs::create_dir_all(at("page/report.html")).expect("made");
+        fs::create_dir(at("folder")).expect("made");
+        fs::write(at("folder/figures"), "").expect("written");
+        for (name, file) in [("page", "report.html"), ("folder", "figures")] {
+            let error = Report::writable(&at(name)).expect_err(name).to_string();
+            assert!(error.contains(file), "{error}");
+        }
     }
 
     #[test]

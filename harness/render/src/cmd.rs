@@ -11,7 +11,6 @@ pub(crate) use render::picture_size;
 use crate::args::Command;
 use hairis_instruments::error::Error;
 use hairis_instruments::program::check_threads;
-use std::io::{self, Write as _};
 
 /// Runs a subcommand.
 ///
@@ -25,15 +24,5 @@ pub fn run(command: &Command) -> Result<(), Error> {
         Command::Merge(flags) => merge::run(flags),
         Command::Figures(flags) => crate::figures::run(flags),
         Command::Fit(flags) => fit::run(flags),
-    }
-}
-
-/// Prints lines on standard output. Ignores a closed pipe, as in `hairis-render render head | true`,
-/// because all results are in files.
-pub(crate) fn print(lines: &str) -> Result<(), Error> {
-    let mut out = io::stdout().lock();
-    match out.write_all(lines.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::Write(error)),
-        _ => Ok(()),
     }
 }

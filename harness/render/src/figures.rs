@@ -14,11 +14,12 @@ mod tests;
 mod verdict;
 
 use crate::args::Figures;
-use crate::cmd::{environment, print};
+use crate::cmd::environment;
 use crate::hair::Choice;
 use crate::scenes::Name;
 use hairis_instruments::error::Error;
 use hairis_instruments::interrupt::Interrupt;
+use hairis_instruments::program::print;
 use hairis_instruments::progress::bar;
 use hairis_materials::files;
 use hairis_variants::ModelId;
@@ -158,7 +159,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     }
     bar.finish_and_clear();
     if let Some(shard) = flags.shard {
-        return print(&format!(
+        return print(format!(
             "shard {shard}: measurements are in {}\n",
             store.folder().display()
         ));
@@ -179,7 +180,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         "wrote {}\n",
         flags.out.join("report.html").display()
     ));
-    print(&lines)
+    print(lines)
 }
 
 /// Hair with other values, which its name tells.

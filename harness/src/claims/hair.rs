@@ -260,7 +260,7 @@ impl Hair {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::efficiency::quadrature;
+    use crate::efficiency::{Case, by_quadrature};
     use hairis_instruments::light::Constant;
 
     #[test]
@@ -275,7 +275,7 @@ mod tests {
         for model in ModelKind::ALL {
             for theta_o_deg in [0.0_f64, 45.0, 75.0] {
                 let found = Hair::new(model, &params, theta_o_deg.to_radians()).found();
-                let want = quadrature(model, &params, theta_o_deg, &Constant).v;
+                let want = by_quadrature(&Case::new(model, &params, theta_o_deg), &Constant).v;
                 for (got, want) in [found.uniform, found.published].into_iter().zip(want) {
                     assert!(
                         (got.value - want).abs() < 1e-5 && got.error < 1e-4,

@@ -9,6 +9,7 @@ use hairis_instruments::error::Error;
 use hairis_instruments::files::{writable, write_json};
 use hairis_instruments::program::say;
 use hairis_instruments::progress::{share_bar, show_share};
+use hairis_instruments::report::Report;
 use std::fs;
 
 /// Runs the comparison.
@@ -23,7 +24,7 @@ pub fn run(flags: &Compare) -> Result<(), Error> {
     fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
     let [json, page] = ["compare.json", "report.html"].map(|name| flags.out.join(name));
     writable(&json)?;
-    writable(&page)?;
+    Report::writable(&flags.out)?;
 
     let bar = share_bar("{msg:>18} {wide_bar} {percent:>3}% {elapsed} (left {eta})");
     let environment_notes = environment.notes();

@@ -4,19 +4,19 @@ use super::print_tables;
 use crate::args::{Fit, FitNorm, FitOver};
 use crate::fit::page::Shown;
 use crate::fit::{self, FitConfig, Look, Norm, Points, residuals};
-use crate::materials::{self, NamedMaterial};
+use crate::materials::{self, NamedMaterial, find_model};
 use crate::study::Grid;
 use core::f64::consts::FRAC_PI_2;
 use hairis_instruments::error::Error;
 use hairis_instruments::files::{whole, writable, write_json};
 use hairis_instruments::machine;
-use hairis_instruments::program::say;
+use hairis_instruments::program::{print, say};
 use hairis_instruments::progress::{Progress, share_bar, show_share};
+use hairis_instruments::report::Report;
 use hairis_materials::material::values_json;
-use hairis_variants::{ModelId, Values};
+use hairis_variants::{Field, ModelId, Values};
 use serde_json::json;
 use std::fs;
-use std::io::{self, Write};
 
 /// Fits the model, prints the fitted material on standard output, and writes the report.
 ///
@@ -29,19 +29,21 @@ pub fn run(flags: &Fit) -> Result<(), Error> {
         return run_over(flags, over);
     }
     let from = source(flags)?;
-    let to = model("--to", &flags.to)?;
+    let to = find_model("--to", &flags.to)?;
     let config = config(flags, to)?;
-    fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
-    let [found_path, json_path, page] =
-        ["fitted.json", "fit.json", "report.html"].map(|name| flags.out.join(name));
-    for path in [&found_path, &json_path, &page] {
-        writable(path)?;
-    }
-
     let look = Look {
         model: from.model,
         values: from.values,
     };
+    refuse_replaced(&config, &fit::first_start(&look, to))?;
+    fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
+    let [found_path, json_path, page] =
+        ["fitted.json", "fit.json", "report.html"].map(|name| flags.out.join(name));
+    for path in [&found_path, &json_path] {
+        writable(path)?;
+    }
+    Report::writable(&flags.out)?;
+
     if Points::new(&look, to, &config, 0)?.is_black() {
         return Err(Error::Usage(format!(
             "{} must reflect light towards the views, got S of 0 in all directions; change its intensities or --theta-o-deg",
@@ -105,17 +107,13 @@ pub fn run(flags: &Fit) -> Result<(), Error> {
         found_path.display(),
         page.display()
     ));
-    let mut out = io::stdout().lock();
-    match writeln!(out, "{fitted}").and_then(|()| out.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::Write(error)),
-        _ => Ok(()),
-    }
+    print(format!("{fitted}\n"))
 }
 
 /// Fits to many looks: writes their rows, and prints a table.
 fn run_over(flags: &Fit, over: FitOver) -> Result<(), Error> {
-    let from = model("--from", flags.from.as_deref().unwrap_or_default())?;
-    let to = model("--to", &flags.to)?;
+    let from = find_model("--from", flags.from.as_deref().unwrap_or_default())?;
+    let to = find_model("--to", &flags.to)?;
     let mut config = config(flags, to)?;
     let grid = match over {
         FitOver::Presets => None,
@@ -147,6 +145,9 @@ fn run_over(flags: &Fit, over: FitOver) -> Result<(), Error> {
         };
         presets.map(look).collect()
     };
+    for (_, look) in &looks {
+        refuse_replaced(&config, &fit::first_start(look, to))?;
+    }
     fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
     let path = flags.out.join("fits.csv");
     writable(&path)?;
@@ -166,17 +167,6 @@ fn run_over(flags: &Fit, over: FitOver) -> Result<(), Error> {
     Ok(())
 }
 
-/// The first entry of a name.
-fn model(flag: &str, name: &str) -> Result<ModelId, Error> {
-    ModelId::find(name, None).ok_or_else(|| {
-        let names: Vec<&str> = ModelId::defaults_of_names().map(ModelId::name).collect();
-        Error::Usage(format!(
-            "{flag} must be one of {}, got {name:?}",
-            names.join(", ")
-        ))
-    })
-}
-
 /// The material that is fitted to.
 fn source(flags: &Fit) -> Result<NamedMaterial, Error> {
     if let Some(path) = &flags.material {
@@ -192,7 +182,7 @@ fn source(flags: &Fit) -> Result<NamedMaterial, Error> {
         };
     }
     let name = flags.from.as_deref().unwrap_or_default();
-    let model = model("--from", name)?;
+    let model = find_model("--from", name)?;
     let presets: Vec<_> = model.presets().collect();
     let preset = flags.preset.as_deref().unwrap_or(presets[0].0);
     let Some((preset, values)) = presets.iter().find(|(one, _)| *one == preset) else {
@@ -207,6 +197,25 @@ fn source(flags: &Fit) -> Result<NamedMaterial, Error> {
         model,
         values: *values,
     })
+}
+
+/// Refuses fixed fields of which the start has another one in their place.
+fn refuse_replaced(config: &FitConfig, start: &Values) -> Result<(), Error> {
+    let head = |field: &Field| field.instead_of.unwrap_or(field.name);
+    let is_fixed = |field: &&Field| config.fixed.iter().any(|name| name == field.name);
+    let fields = || start.fields().iter();
+    for field in fields().filter(is_fixed) {
+        let is_instead = |other: &&Field| start.has(other.name) && head(other) == head(field);
+        if !start.has(field.name)
+            && let Some(other) = fields().find(is_instead)
+        {
+            return Err(Error::Usage(format!(
+                "--fix must be a field that the start has, got {:?}; fix {}, which the start has in its place",
+                field.name, other.name
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// Settings of the flags.

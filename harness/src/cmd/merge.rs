@@ -1,7 +1,7 @@
 //! `hairis merge`: joins the parts of a study.
 
 use super::environment;
-use super::study::finish;
+use super::study::{check_outputs, finish};
 use crate::args::Merge;
 use crate::study::output::Study;
 use hairis_instruments::error::Error;
@@ -16,8 +16,8 @@ use std::fs;
 /// # Errors
 ///
 /// [`Error::Part`] and [`Error::Missing`] if the parts are not those of one study, all of them; [`Error::Environment`] and
-/// [`Error::Usage`] if the environment cannot be read or is not theirs; [`Error::Output`] if the tables cannot be
-/// written; [`Error::Failed`] at the end, with all files written, if a check failed.
+/// [`Error::Usage`] if the environment cannot be read or is not theirs; [`Error::Output`] before any work is done, if the
+/// folder cannot be written; [`Error::Failed`] at the end, with all files written, if a check failed.
 pub fn run(flags: &Merge) -> Result<(), Error> {
     let study = Study::read(&flags.parts)?;
     let (environment, name) = environment(flags.env.as_deref(), flags.layer.as_deref())?;
@@ -31,6 +31,7 @@ pub fn run(flags: &Merge) -> Result<(), Error> {
         say("the look-up of the environment is not timed; pass --env FILE to time it");
     }
     fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
+    check_outputs(&flags.out, study.has_materials())?;
     let environment = is_theirs.then_some(&environment);
     finish(study, environment, &flags.out, Interrupt::watch())
 }

@@ -3,13 +3,14 @@
 mod folder;
 
 use crate::args::{Shader, ShaderArithmetic, ShaderCall, ShaderTarget};
+use crate::materials::find_model;
 use hairis::Material;
 use hairis_instruments::error::Error;
+use hairis_instruments::program::print;
 use hairis_materials::MaterialSpec;
-use hairis_shaders::{Call, Function, Language, Program, Target, numbers, print};
+use hairis_shaders::{Call, Function, Language, Program, Target, numbers};
 use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
 use std::fs;
-use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
 /// Prints the model on standard output, or models into a folder.
@@ -31,11 +32,7 @@ pub fn run(flags: &Shader) -> Result<(), Error> {
         target,
         materials: &materials,
     })?;
-    let mut out = io::stdout().lock();
-    match out.write_all(&text).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::Write(error)),
-        _ => Ok(()),
-    }
+    print(text)
 }
 
 /// Materials of a file, by name.
@@ -69,14 +66,7 @@ fn model(flags: &Shader, materials: &[(String, MaterialSpec)]) -> Result<ModelId
     let first = materials.first().map(|(_, material)| material.model);
     let name = flags.model.as_deref().or(first.map(ModelId::name));
     let name = name.unwrap_or_default();
-    let list = |words: Vec<&str>| words.join(", ");
-    let Some(of_name) = ModelId::find(name, None) else {
-        let names = ModelId::defaults_of_names().map(ModelId::name).collect();
-        return Err(Error::Usage(format!(
-            "--model must be one of {}, got {name:?}",
-            list(names)
-        )));
-    };
+    let of_name = find_model("--model", name)?;
     if let Some((_, other)) = materials
         .iter()
         .find(|(_, material)| material.model.name() != name)
@@ -102,7 +92,10 @@ fn model(flags: &Shader, materials: &[(String, MaterialSpec)]) -> Result<ModelId
         Error::Usage(if words.is_empty() {
             format!("--sampler must be left out, as {name} has one sampler, got {word:?}")
         } else {
-            format!("--sampler must be one of {}, got {word:?}", list(words))
+            format!(
+                "--sampler must be one of {}, got {word:?}",
+                words.join(", ")
+            )
         })
     })
 }
@@ -126,6 +119,10 @@ impl Visitor for Source<'_> {
             (Some(ShaderArithmetic::GpuNative), _) => Target::GpuNative,
         };
         let mut program = Program::of_id(ModelId::of::<M>(), arithmetic);
+        let functions = functions(flags, &program)?;
+        for (name, _) in self.materials {
+            refuse_taken(flags, &program, &functions, name)?;
+        }
         let mut add = |name: &str, params: M::Params| -> Result<(), Error> {
             let scale = if flags.conserving {
                 Material::new(&M::MODEL, &params).conserving_scale()
@@ -148,7 +145,6 @@ impl Visitor for Source<'_> {
             let values: &Values = &material.values;
             add(name, M::Params::from_values(values)?)?;
         }
-        let functions = functions(flags, &program)?;
         program.keep(functions);
         let language = match self.target {
             ShaderTarget::C => Language::C,
@@ -161,7 +157,7 @@ impl Visitor for Source<'_> {
                 return Ok((program, words));
             }
         };
-        let text = print(&program, language).into_bytes();
+        let text = hairis_shaders::print(&program, language).into_bytes();
         Ok((program, text))
     }
 }
@@ -177,6 +173,29 @@ fn spirv(_: &Program) -> Result<Vec<u8>, Error> {
     Err(Error::Usage(
         "--target spirv needs a build with `--features spirv`: cargo build --release -p hairis-harness --features spirv".to_owned(),
     ))
+}
+
+/// Refuses a material whose function would have the name of another one.
+fn refuse_taken(
+    flags: &Shader,
+    program: &Program,
+    functions: &[Function],
+    name: &str,
+) -> Result<(), Error> {
+    let name = format!("material_{name}");
+    let is_taken = |by: &[Function]| by.iter().any(|function| function.name() == name);
+    let by = if is_taken(program.materials()) {
+        "a preset"
+    } else if is_taken(functions) {
+        "another function"
+    } else {
+        return Ok(());
+    };
+    let file = flags.material.as_deref().unwrap_or(Path::new(""));
+    Err(Error::Usage(format!(
+        "--material must have a name of its own, got {}: {name} is {by}; rename the file",
+        file.display()
+    )))
 }
 
 /// Functions that the flags name.

@@ -13,6 +13,7 @@ use hairis_instruments::interrupt::Interrupt;
 use hairis_instruments::light::Environment;
 use hairis_instruments::program::say;
 use hairis_instruments::progress::{bar, share_bar, show_share};
+use hairis_instruments::report::Report;
 use hairis_instruments::shard::Shard;
 use std::fs;
 use std::io::ErrorKind;
@@ -48,6 +49,9 @@ pub fn run(flags: &Flags) -> Result<(), Error> {
     }
     fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
     let (part, finished) = Part::open(&flags.out, &header)?;
+    if shard == Shard::WHOLE {
+        check_outputs(&flags.out, !materials.is_empty())?;
+    }
 
     let mut todo: Vec<usize> = (0..cells).filter(|index| shard.owns(*index)).collect();
     let owned = todo.len();
@@ -87,6 +91,12 @@ pub fn run(flags: &Flags) -> Result<(), Error> {
     }
 }
 
+/// Checks that [`finish`] can write its files, before the work for them begins.
+pub(super) fn check_outputs(out: &Path, has_materials: bool) -> Result<(), Error> {
+    Study::writable(out, has_materials)?;
+    Report::writable(out)
+}
+
 /// Computes how different the models look, measures times, writes the tables and prints the
 /// summary.
 pub(super) fn finish(
@@ -108,10 +118,10 @@ pub(super) fn finish(
     study.time(environment);
     journal.check()?;
     study.write(out, &difference)?;
-    journal.remove();
     study
         .report(&difference, claims(out, &study).as_ref())
         .write(out, "study")?;
+    journal.remove();
     let page = out.join("report.html");
     let tables = study.summary().into_iter().chain(study.materials());
     let tables: Vec<_> = tables.chain(difference.tables()).collect();

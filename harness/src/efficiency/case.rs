@@ -14,7 +14,7 @@ use hairis_instruments::sequence::{XiSource, to_unit_f32};
 use hairis_reference::Reference;
 
 /// A model with its parameters, seen from `wo`.
-pub(super) struct Case {
+pub(crate) struct Case {
     pub(super) model: ModelKind,
     pub(super) theta_o_deg: f64,
     /// In the order of [`Sampler::ALL`].
@@ -50,7 +50,7 @@ impl core::fmt::Debug for Case {
 }
 
 impl Case {
-    pub(super) fn new(model: ModelKind, params: &HairParams, theta_o_deg: f64) -> Self {
+    pub(crate) fn new(model: ModelKind, params: &HairParams, theta_o_deg: f64) -> Self {
         let wo = fibre_direction(theta_o_deg.to_radians(), PHI_O_DEG.to_radians()).as_vec3();
         // The oracle gets the same rounded direction.
         let (parameters, exact) = (params.desc().map(f64::from), wo.as_dvec3());

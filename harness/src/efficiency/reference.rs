@@ -55,7 +55,7 @@ pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
 
 /// Integrates each case under each light once: tests run the tables a dozen times, and these integrals would take most of their time.
 #[cfg(test)]
-pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
+pub(crate) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
     use std::collections::HashMap;
     use std::sync::{Arc, Mutex, OnceLock, PoisonError};
     type Known = Mutex<HashMap<String, Arc<OnceLock<Reference>>>>;
@@ -86,7 +86,7 @@ fn integrated(case: &Case, light: &dyn Light) -> Reference {
 
 /// V of directions whose density is proportional to the mean of RGB of `S cos theta_i`, by the light's own quadrature.
 #[cfg(test)]
-pub(super) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
+pub(crate) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
     let hair = |dir| intensity(case.oracle_value(dir));
     let sphere = case.sphere(Sampler::Published);
     let albedo = sphere.integrate_direction(|dir| [hair(dir)]).value[0];
@@ -98,7 +98,7 @@ pub(super) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
 /// quadrature. With h = f / (p + q), of the densities of the sampler and of the light, the estimate from candidates is the mean
 /// of `n` values of h drawn by p plus that of `n` drawn by q.
 #[cfg(test)]
-pub(super) fn ray_v(case: &Case, light: &dyn Light, sampler: Sampler) -> [f64; 2] {
+pub(crate) fn ray_v(case: &Case, light: &dyn Light, sampler: Sampler) -> [f64; 2] {
     let both = |dir: DVec3| case.density(sampler, dir) + light.pdf(dir);
     let mut sphere = case.sphere(sampler).clone();
     sphere.tolerance.max_panels = 2_000;

@@ -14,6 +14,9 @@ use std::borrow::Cow;
 /// Offsets across the fibre over which models of the near field are averaged: middles of as many equal parts.
 const OFFSETS: u16 = 8;
 
+/// Least weight of a view, as a share of the largest: residuals divide by the weight.
+const LEAST_WEIGHT: f64 = 1e-100;
+
 /// Streams of a view.
 const STREAMS: u64 = 4;
 
@@ -31,7 +34,7 @@ pub struct Points {
     pub(super) wi: Vec<[Vec<f32>; 3]>,
     /// Weights of the integral of `S cos theta_i` over the directions of each view, times the weight of the view; and `cos theta_i`.
     pub(super) weights: Vec<Vec<[f64; 2]>>,
-    /// Weight of each view.
+    /// Weight of each view, as a share of the largest.
     pub(super) view_weights: Vec<f64>,
     /// S of the look, by view and direction.
     pub(super) look: Vec<Vec<[f64; 3]>>,
@@ -58,6 +61,10 @@ impl Points {
         } else {
             vec![0.0]
         };
+        // Ratios of weights alone count, and sums of large weights would overflow.
+        let largest = config.weights.iter().copied().fold(0.0, f64::max);
+        let share = |weight: &f64| (weight / largest).max(LEAST_WEIGHT);
+        let view_weights: Vec<f64> = config.weights.iter().map(share).collect();
         let mut points = Self {
             views: config
                 .views
@@ -67,14 +74,15 @@ impl Points {
             offsets,
             wi: Vec::new(),
             weights: Vec::new(),
-            view_weights: config.weights.clone(),
+            view_weights,
             look: Vec::new(),
             blurs: None,
         };
-        for (view, weight) in config.weights.iter().enumerate() {
+        for view in 0..points.views.len() {
             let bsdfs = points.bsdfs(&material, view);
             let seed = (config.seed, STREAMS * view as u64 + stream);
-            let (wi, weights) = draw(&bsdfs, config.directions, seed, *weight);
+            let weight = points.view_weights[view];
+            let (wi, weights) = draw(&bsdfs, config.directions, seed, weight);
             points.wi.push(wi);
             points.weights.push(weights);
         }

@@ -113,6 +113,37 @@ fn fixed_fields_stay_and_equal_flags_give_equal_values() {
 }
 
 #[test]
+fn weights_count_by_their_ratios() {
+    let look = look(ModelId::Gaussian, "brown");
+    for (to, norm) in [(ModelId::Cauchy, Norm::L1), (ModelId::KajiyaKay, Norm::L2)] {
+        let fit_with = |weights: [f64; 2]| {
+            let config = FitConfig {
+                norm,
+                views: vec![0.0, 0.2],
+                weights: weights.to_vec(),
+                starts: 1,
+                directions: 128,
+                ..FitConfig::default()
+            };
+            let found = fit(&look, to, &config).expect("legal values");
+            let rows = residuals(&look, &found.found, &found.points).expect("legal values");
+            let numbers = |row: &Residual| [row.l1, row.l2, row.albedo_from, row.albedo_to];
+            let mut numbers = rows.iter().flat_map(numbers);
+            assert!(numbers.all(f64::is_finite), "{weights:?}: {rows:?}");
+            found
+        };
+        let equal = fit_with([1.0, 1.0]);
+        assert!(equal.distance < equal.distance_of_start, "it moves");
+        for weight in [1e308, 1e-308] {
+            let found = fit_with([weight, weight]);
+            assert_eq!(found.found.values, equal.found.values, "{weight:e}");
+            assert_eq!(found.distance, equal.distance, "{weight:e}");
+        }
+        fit_with([1e308, 1e-308]);
+    }
+}
+
+#[test]
 fn the_distance_is_that_of_another_quadrature() {
     use crate::difference::Difference;
     use crate::journal::Journal;

@@ -76,7 +76,7 @@ fn of_subjects(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::efficiency::{SAMPLERS, perfect_v, quadrature, ray_v};
+    use crate::efficiency::{Case, SAMPLERS, by_quadrature, perfect_v, ray_v};
     use crate::lights::Lights;
     use crate::study::Grid;
     use crate::variance::POOL_SIZES;
@@ -107,8 +107,9 @@ mod tests {
             let found = measure(1, BUDGET, &lights, &cell, &Sampler::ALL).expect("accepted");
             let samplers = Sampler::ALL.len();
             for (m, model) in ModelKind::ALL.into_iter().enumerate() {
+                let case = Case::new(model, &params, f64::from(theta_o));
                 for (l, light) in lights.iter().take(4).enumerate() {
-                    let want = quadrature(model, &params, f64::from(theta_o), *light);
+                    let want = by_quadrature(&case, *light);
                     for (sampler, v) in SAMPLERS.into_iter().zip(want.v) {
                         let found = &found[(m * samplers + sampler as usize) * 5 + l];
                         let place = format!(
@@ -127,7 +128,7 @@ mod tests {
                         assert!(error < 0.05 * v, "{place}: an error of {error}");
                     }
                     let found = &found[(ModelKind::ALL.len() * samplers + m) * 5 + l];
-                    let v = perfect_v(model, &params, f64::from(theta_o), *light);
+                    let v = perfect_v(&case, *light);
                     let place = format!(
                         "{beta_r} {theta_o} {model:?} {} perfect: {found:?}",
                         light.name()
@@ -174,11 +175,11 @@ mod tests {
             let params = cell.params().expect("accepted");
             let found = measure(1, budget, &lights, &cell, &SAMPLERS).expect("accepted");
             for (m, model) in ModelKind::ALL.into_iter().enumerate() {
+                let case = Case::new(model, &params, f64::from(theta_o));
                 for (s, sampler) in SAMPLERS.into_iter().enumerate() {
                     for (l, light) in lights.iter().take(4).enumerate() {
                         let found = &found[(m * SAMPLERS.len() + s) * 5 + l];
-                        let [mis, pool] =
-                            ray_v(model, &params, f64::from(theta_o), *light, sampler);
+                        let [mis, pool] = ray_v(&case, *light, sampler);
                         let place = format!(
                             "{beta_r} {theta_o} {model:?} {} {sampler:?}: {found:?}",
                             light.name()

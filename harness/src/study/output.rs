@@ -9,7 +9,7 @@ use super::view::Counted;
 use crate::difference::Difference;
 use hairis_instruments::columns::Columns;
 use hairis_instruments::error::Error;
-use hairis_instruments::files::{whole, write_json};
+use hairis_instruments::files::{whole, writable, write_json};
 use hairis_instruments::machine;
 use hairis_instruments::stats::Estimate;
 use serde_json::{Value, json};
@@ -108,6 +108,23 @@ impl Study {
             }
         }
         rays::efficiencies(columns, &rows, self)
+    }
+
+    /// Checks that [`write`](Self::write) can write into `dir`, before the work for it begins.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Output`] for the first that cannot be written.
+    pub fn writable(dir: &Path, has_materials: bool) -> Result<(), Error> {
+        let mut files = vec!["times.csv", "refitted.csv", "study.json"];
+        files.extend(["study.csv", "efficiency.csv", "difference.csv"]);
+        if cfg!(feature = "parquet") {
+            files.extend(["study.parquet", "efficiency.parquet", "difference.parquet"]);
+        }
+        if has_materials {
+            files.push("materials.csv");
+        }
+        files.iter().try_for_each(|name| writable(&dir.join(name)))
     }
 
     /// Writes `study.csv` (the rows), `efficiency.csv`, `difference.csv` (how far apart the models are), `refitted.csv` (the fitted

@@ -182,25 +182,6 @@ pub(super) mod tests {
         assert!(got.kl.z_score(0.422_784_335_098_467).abs() < 4.0, "{got:?}");
     }
 
-    #[test]
-    fn errors_of_the_divergence_are_those_of_its_spread() {
-        let mut z = Moments::new();
-        for run in 0..1_000 {
-            let mut from = Independent::new(2, run);
-            let mut tally = Tally::default();
-            for _ in 0..250 {
-                tally.push(draw(&mut from), f64x8::splat(1.0));
-            }
-            z.push(figures(&[tally]).kl.z_score(0.422_784_335_098_467));
-        }
-        assert!(
-            z.mean().abs() < 0.2 && (z.variance() - 1.0).abs() < 0.25,
-            "{} {}",
-            z.mean(),
-            z.variance()
-        );
-    }
-
     /// A light of radiance 1 on [0, 0.1) of [0, 1), under the density `p = 1/2 + x`; `ratio` directions of the light to one of the sampler.
     fn small_light(run: u64, ratio: u64) -> Figures {
         let mut from = Independent::new(3, run);

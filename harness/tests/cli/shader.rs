@@ -1,9 +1,8 @@
 //! `hairis shader`: source on standard output, and refusals in one line.
 
-use super::{Run, good, run};
+use super::{Run, command, good, names, run};
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
 
 fn print(args: &[&str]) -> String {
     let printed: Run = run(&[&["shader"], args].concat(), b"");
@@ -127,14 +126,69 @@ fn materials_of_a_file_are_functions() {
     assert!(error.contains("beta"), "{error}");
 }
 
-/// Names of the files in a folder, sorted.
-fn names(dir: &Path) -> Vec<String> {
-    let entries = fs::read_dir(dir).unwrap();
-    let mut names: Vec<_> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
+#[test]
+fn names_of_files_that_are_taken_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = |name: &str| {
+        let path = dir.path().join(name);
+        fs::write(&path, good().to_string()).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let flags = ["--target", "c", "--call", "material"];
+    for (name, more, words) in [
+        (
+            "brown.json",
+            &[][..],
+            "brown.json: material_brown is a preset",
+        ),
+        (
+            "BLOND.json",
+            &["--conserving"],
+            "material_blond is a preset",
+        ),
+        (
+            "gradient.json",
+            &["--gradient"],
+            "gradient.json: material_gradient is another function",
+        ),
+    ] {
+        let error = refused(&[&flags[..], &["--material", &file(name)], more].concat());
+        assert!(
+            error.contains("--material must have a name of its own") && error.contains(words),
+            "{error}"
+        );
+    }
+    let free = print(&[&flags[..], &["--material", &file("gradient.json")]].concat());
+    assert!(free.contains("hairis_gaussian_material_gradient(void)"));
+}
+
+#[test]
+fn outputs_that_are_closed_or_full_are_no_panic() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().to_str().unwrap();
+    let flags = ["shader", "--model", "kajiya-kay", "--target", "c"];
+    for more in [&[][..], &["--out", out]] {
+        let args = [&flags[..], more].concat();
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let closed: Run = command(&args).stdout(writer).output().unwrap().into();
+        assert_eq!(
+            (closed.code, closed.err.len()),
+            (Some(0), 0),
+            "{args:?}: {:?}",
+            closed.err
+        );
+        if cfg!(target_os = "linux") {
+            let full = fs::File::options().write(true).open("/dev/full").unwrap();
+            let full: Run = command(&args).stdout(full).output().unwrap().into();
+            assert_eq!(
+                (full.code, full.err.len()),
+                (Some(2), 1),
+                "{args:?}: {:?}",
+                full.err
+            );
+        }
+    }
 }
 
 #[test]
@@ -183,7 +237,7 @@ fn a_folder_has_every_model_in_every_language() {
     // A second run replaces the files of the first.
     fs::write(out.join("example.c"), "").unwrap();
     print(&["--out", to]);
-    assert_eq!(self::names(&out), names);
+    assert_eq!(super::names(&out), names);
     assert!(fs::metadata(out.join("example.c")).unwrap().len() > 0);
 }
 
@@ -209,17 +263,31 @@ fn folders_of_others_are_refused() {
     let path = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
     fs::write(path("file"), "").unwrap();
     fs::create_dir(path("project")).unwrap();
-    fs::write(path("project/README.md"), "# Mine").unwrap();
     for (out, word) in [
         (path("file"), "cannot write"),
         (path("file/folder"), "cannot write"),
-        (path("project"), "--out must be a new folder"),
         (String::new(), "a value is required"),
     ] {
         let error = refused(&["--model", "chiang", "--target", "c", "--out", &out]);
         assert!(error.contains(word) && error.contains(&out), "{error}");
     }
-    assert_eq!(names(&dir.path().join("project")), ["README.md"]);
+    let project = path("project");
+    let readme = path("project/README.md");
+    let flags = ["--model", "kajiya-kay", "--target", "c", "--out", &project];
+    for title in [
+        "# Mine",
+        "# hairis for Python",
+        "# hairis notes as source",
+        "# hairis 1 of 2 as source",
+    ] {
+        fs::write(&readme, title).unwrap();
+        let error = refused(&flags);
+        assert!(error.contains("--out must be a new folder"), "{error}");
+        assert_eq!(names(&dir.path().join("project")), ["README.md"], "{title}");
+    }
+    // A folder of another version is the command's own.
+    fs::write(&readme, "# hairis 9.8.7-rc.1 as source\r\n").unwrap();
+    print(&flags);
     // Nothing is written where anything is refused.
     for flags in [&["--sampler", "best"][..], &["--model", "fur"]] {
         let error = refused(&[flags, &["--out", &path("none")]].concat());

@@ -8,8 +8,8 @@ mod refused;
 use super::end;
 use super::{Run, command};
 use core::time::Duration;
-use std::fs;
-use std::path::Path;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::sync::OnceLock;
 use std::thread;
@@ -42,17 +42,21 @@ fn merge(out: &Path, parts: &[&Path]) -> Run {
 /// Folder of the figures that a run has kept.
 const FIGURES: &str = "kept";
 
-/// Runs a study twice. At first its table cannot be written: its figures stay, and are copied to the folder [`FIGURES`].
+/// Runs a study twice. At first a drawing, the last of its files, cannot be written: its figures stay, and are copied to the folder
+/// [`FIGURES`].
 fn study_and_keep(dir: &Path, threads: &str, more: &[&str]) -> Run {
-    let taken = dir.join("study.csv");
+    let taken = dir.join("figures/study-01-summary.svg");
     fs::create_dir_all(&taken).unwrap();
     let refused = study(dir, threads, more);
     assert_eq!(refused.code, Some(2), "{:?}", refused.err);
     let last = refused.err.last().unwrap();
-    assert!(last.contains("study.csv"), "{last}");
+    assert!(last.contains("study-01-summary.svg"), "{last}");
     copy_figures(dir, &dir.join(FIGURES));
     fs::remove_dir(taken).unwrap();
-    study(dir, threads, more)
+    let run = study(dir, threads, more);
+    let continues = |line: &String| line.contains("continues after") && line.contains("figures");
+    assert!(run.err.iter().any(continues), "{:?}", run.err);
+    run
 }
 
 /// Lends the figures that a run in `from` has kept: one in `to` goes on from them. Finding them takes most of a short run.
@@ -71,19 +75,23 @@ fn copy_figures(from: &Path, to: &Path) {
 
 /// A finished run on one thread, made once.
 fn reference() -> &'static Path {
-    static DIR: OnceLock<TempDir> = OnceLock::new();
-    DIR.get_or_init(|| {
-        let dir = TempDir::new().unwrap();
-        let run = study_and_keep(dir.path(), "1", &[]);
+    // A folder of the build, as no destructor removes a static one; one process at a time uses it.
+    static DIR: OnceLock<(File, PathBuf)> = OnceLock::new();
+    let (_, dir) = DIR.get_or_init(|| {
+        let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study");
+        let lock = File::create(dir.with_extension("lock")).unwrap();
+        lock.lock().unwrap();
+        drop(fs::remove_dir_all(&dir));
+        let run = study_and_keep(&dir, "1", &[]);
         assert_eq!(run.code, Some(0), "{:?}", run.err);
         assert!(
             run.out.iter().any(|line| line.contains("geometric mean")),
             "a summary: {:?}",
             run.out
         );
-        dir
-    })
-    .path()
+        (lock, dir)
+    });
+    dir
 }
 
 /// Files that depend on the seed and the build alone.

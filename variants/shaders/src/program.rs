@@ -170,6 +170,7 @@ impl Program {
     }
 
     /// Adds a material under a name that is an identifier in C, by its numbers in the order of [`material`](Self::material).
+    /// Replaces the material of that name, if any.
     ///
     /// # Panics
     ///

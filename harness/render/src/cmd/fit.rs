@@ -1,7 +1,6 @@
 //! `hairis-render fit`.
 
 use super::place::{Ground, choices};
-use super::print;
 use crate::args::Fit as Flags;
 use crate::film::{Film, Picture};
 use crate::fit::{Fit, FitSettings, Target, fit};
@@ -13,7 +12,7 @@ use hairis_instruments::columns::Columns;
 use hairis_instruments::error::Error;
 use hairis_instruments::files::{whole, writable, write_json};
 use hairis_instruments::plot::{Axis, Series, lines};
-use hairis_instruments::program::say;
+use hairis_instruments::program::{print, say};
 use hairis_instruments::progress::{share_bar, show_share};
 use hairis_instruments::table::{Table, number};
 use hairis_materials::material::values_json;
@@ -89,7 +88,7 @@ pub(super) fn run(flags: &Flags) -> Result<(), Error> {
     let exposure = flags.exposure.unwrap_or_else(|| picture::exposure(&target));
     write_pictures(&[before, after, target], exposure, &pictures)?;
     let text = table(&found).to_text(None);
-    print(&format!("{text}wrote {}\n", material.display()))
+    print(format!("{text}wrote {}\n", material.display()))
 }
 
 /// The material that the flags begin with.

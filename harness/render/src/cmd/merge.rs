@@ -1,11 +1,11 @@
 //! `hairis-render merge`.
 
-use super::print;
 use super::render::{check_out, finish};
 use crate::args::Merge;
 use crate::layers::Beside;
 use crate::part::Part;
 use hairis_instruments::error::Error;
+use hairis_instruments::program::print;
 
 /// Joins the parts of a picture.
 ///
@@ -21,5 +21,5 @@ pub(super) fn run(flags: &Merge) -> Result<(), Error> {
         .collect::<Result<_, Error>>()?;
     let Part { run, film, .. } = Part::merge(parts)?;
     let wrote = finish(&film, &Beside::film(&film, &run), &flags.out, None)?;
-    print(&wrote)
+    print(wrote)
 }

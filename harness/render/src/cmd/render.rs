@@ -3,7 +3,6 @@
 mod description;
 
 use super::place::{Ground, choices};
-use super::print;
 use crate::args::Render;
 use crate::film::{self, Crop, Film};
 use crate::formats::write_hair;
@@ -22,7 +21,7 @@ pub(crate) use description::picture_size;
 use hairis_instruments::error::Error;
 use hairis_instruments::files::{whole, writable};
 use hairis_instruments::interrupt::Interrupt;
-use hairis_instruments::program::say;
+use hairis_instruments::program::{print, say};
 use hairis_instruments::progress::{share_bar, show_share};
 use hairis_instruments::shard::Shard;
 use std::fs;
@@ -127,7 +126,7 @@ fn picture(
             // Ignore errors: a short run has left none.
             let _ = fs::remove_file(part_path.with_extension(preview));
         }
-        return print(&format!(
+        return print(format!(
             "{profile}wrote {}: join the parts by `hairis-render merge`\n",
             part_path.display()
         ));
@@ -141,7 +140,7 @@ fn picture(
     // A larger --spp goes on from it. Marked before anything is printed, because printing may fail.
     part.finished = true;
     log.write(&part)?;
-    print(&format!("{profile}{wrote}"))
+    print(format!("{profile}{wrote}"))
 }
 
 /// Writes a picture that is whole, and returns the line that says so.

@@ -6,6 +6,7 @@ use clap::ValueEnum as _;
 use core::fmt::Write as _;
 use hairis_instruments::error::Error;
 use hairis_instruments::files::whole;
+use hairis_instruments::program::print;
 use hairis_materials::MaterialSpec;
 use hairis_shaders::{Call, Program, Rounding};
 use hairis_variants::ModelId;
@@ -14,9 +15,7 @@ use std::fs;
 use std::io::{ErrorKind, Write as _};
 use std::path::Path;
 
-/// First words of the README: they tell a folder of this command from others.
-const MARK: &str = "# hairis ";
-/// README before the table of files.
+/// README before the table of files. Its title, with any version, tells a folder of this command from others.
 const HEAD: &str = include_str!("folder/head.md");
 /// README after the table, where there are examples.
 const EXAMPLES: &str = include_str!("folder/examples.md");
@@ -121,12 +120,11 @@ pub(super) fn write(
     for (file, text) in &files {
         whole(&dir.join(file), |out| out.write_all(text))?;
     }
-    println!(
-        "{printed} files of source in {}: see {}",
+    print(format!(
+        "{printed} files of source in {}: see {}\n",
         dir.display(),
         dir.join("README.md").display()
-    );
-    Ok(())
+    ))
 }
 
 /// Refuses a folder whose files this command did not write.
@@ -136,13 +134,24 @@ fn refuse_others(dir: &Path) -> Result<(), Error> {
         entries => entries.map_err(Error::output(dir))?,
     };
     let readme = fs::read_to_string(dir.join("README.md"));
-    if entries.next().is_none() || readme.is_ok_and(|text| text.starts_with(MARK)) {
+    if entries.next().is_none() || readme.is_ok_and(|text| is_of_command(&text)) {
         return Ok(());
     }
     Err(Error::Usage(format!(
         "--out must be a new folder, an empty one, or one that this command wrote, got {}, which has other files",
         dir.display()
     )))
+}
+
+/// Whether a README has the title that this command writes, of any version.
+fn is_of_command(readme: &str) -> bool {
+    let title = readme.lines().next().unwrap_or_default();
+    let version = title
+        .strip_prefix("# hairis ")
+        .and_then(|rest| rest.strip_suffix(" as source"));
+    version.is_some_and(|version| {
+        version.starts_with(|c: char| c.is_ascii_digit()) && !version.contains(' ')
+    })
 }
 
 /// Languages that the flags leave open. SPIR-V needs a feature of the build.

@@ -1,7 +1,7 @@
 //! Refusals of a study: flags, and files that belong to another one.
 
-use super::{WHOLE, assert_refused, lend, merge, reference, study};
-use crate::cli::run;
+use super::{FIGURES, WHOLE, assert_refused, lend, merge, reference, study};
+use crate::cli::{names, run};
 use hairis_harness::study::part;
 use std::fs;
 use std::path::Path;
@@ -222,4 +222,39 @@ fn a_folder_that_cannot_be_written_is_refused() {
     );
     fs::create_dir(dir.path().join(WHOLE)).unwrap();
     assert_refused(&study(dir.path(), "1", &[]), "cannot write");
+}
+
+#[test]
+fn files_that_cannot_be_written_are_refused_before_any_work() {
+    let is_result =
+        |name: &String| !name.ends_with(".jsonl") && !name.ends_with(".part") && name != FIGURES;
+    let results: Vec<String> = names(reference()).into_iter().filter(is_result).collect();
+    for name in ["figures", "report.html", "study.csv", "refitted.csv"] {
+        assert!(results.iter().any(|result| result == name), "{results:?}");
+    }
+    for name in &results {
+        let dir = TempDir::new().unwrap();
+        let taken = dir.path().join(name);
+        if name == "figures" {
+            fs::write(taken, "").unwrap();
+        } else {
+            fs::create_dir(taken).unwrap();
+        }
+        assert_refused(&study(dir.path(), "1", &[]), name);
+        let part = fs::read_to_string(dir.path().join(WHOLE)).unwrap();
+        assert_eq!(part.lines().count(), 1, "{name}: no cell is computed");
+        assert_refused(&merge(dir.path(), &[reference()]), name);
+        let is_kept = |name: &String| name.ends_with(".part");
+        assert!(
+            !names(dir.path()).iter().any(is_kept),
+            "{name}: no model is refitted"
+        );
+    }
+    // The reference has no materials.
+    let dir = TempDir::new().unwrap();
+    fs::create_dir(dir.path().join("materials.csv")).unwrap();
+    assert_refused(
+        &study(dir.path(), "1", &["--model", "chiang"]),
+        "materials.csv",
+    );
 }
