@@ -4,7 +4,7 @@
 #
 # Not here are sets that other steps compile. The test command has hairis-harness and hairis-instruments with no feature,
 # hairis-gradients with `any` and hairis-shaders with `spirv`; .ci/release.sh has hairis-gradients and hairis-shaders with no
-# feature, and hairis-harness without `spirv`.
+# feature, and hairis-harness without `spirv`. The wheel has hairis-materials with no feature.
 #
 # Licences, bans and sources need cargo-deny, which takes minutes to build: where it is not installed the script says so.
 # Advisories are not checked: their database is a git repository.

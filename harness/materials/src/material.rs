@@ -2,8 +2,13 @@
 
 use crate::json::{Json, join, number, numbers, refusal, word};
 use hairis::ParamError;
-use hairis_variants::{AnyMaterial, Field, Kind, ModelId, Values};
+use hairis_variants::{Field, Kind, ModelId, Values};
 use std::collections::BTreeMap;
+
+#[cfg(feature = "any")]
+use hairis_variants::AnyMaterial;
+#[cfg(not(feature = "any"))]
+use hairis_variants::{Parameters, Registered, Visitor};
 
 /// Fields of an object, by name.
 type Fields = BTreeMap<String, Json>;
@@ -32,7 +37,21 @@ pub struct MaterialSpec {
     /// Parameters as they are in the input.
     pub exact: Values<f64>,
     /// The material for the kernels.
+    #[cfg(feature = "any")]
     pub material: AnyMaterial,
+}
+
+/// Checks values of a model's parameters, and makes no material of them.
+#[cfg(not(feature = "any"))]
+struct Check<'a>(&'a Values);
+
+#[cfg(not(feature = "any"))]
+impl Visitor for Check<'_> {
+    type Output = Result<(), ParamError>;
+
+    fn visit<M: Registered>(self) -> Self::Output {
+        M::Params::from_values(self.0).map(|_| ())
+    }
 }
 
 impl MaterialSpec {
@@ -42,11 +61,14 @@ impl MaterialSpec {
     ///
     /// If a value is out of its range.
     pub fn new(model: ModelId, values: Values) -> Result<Self, ParamError> {
+        #[cfg(not(feature = "any"))]
+        model.visit(Check(&values))?;
         Ok(Self {
             model,
             is_chosen: false,
             values,
             exact: values.map(f64::from),
+            #[cfg(feature = "any")]
             material: model.material(&values)?,
         })
     }
@@ -105,15 +127,12 @@ impl MaterialSpec {
             model.defaults().map(f64::from),
             &params,
         )?;
-        let material = model
-            .material(&values)
-            .map_err(|error| refused("params", fields, &error, &exact))?;
+        let rounded =
+            Self::new(model, values).map_err(|error| refused("params", fields, &error, &exact))?;
         Ok(Self {
-            model,
             is_chosen: choice.is_some(),
-            values,
             exact,
-            material,
+            ..rounded
         })
     }
 
@@ -174,12 +193,12 @@ impl MaterialSpec {
             }
         }
         let (values, exact) = replaced("", self.values, self.exact, &given)?;
-        let material = self.model.material(&values);
+        let rounded =
+            Self::new(self.model, values).map_err(|error| refused("", fields, &error, &exact))?;
         Ok(Self {
-            material: material.map_err(|error| refused("", fields, &error, &exact))?,
-            values,
+            is_chosen: self.is_chosen,
             exact,
-            ..*self
+            ..rounded
         })
     }
 }

@@ -7,62 +7,34 @@ use hairis::HairParams;
 use hairis::params::{self, ArtistControls};
 use hairis_variants::Parameters;
 
+/// Converts structs of C to those of Rust with the same fields, and back.
+macro_rules! same_fields {
+    ($($of_c:ident = $of_rust:ident { $($field:ident),* })*) => {$(
+        impl From<params::$of_rust> for $of_c {
+            fn from(from: params::$of_rust) -> Self {
+                Self { $($field: from.$field.into()),* }
+            }
+        }
+
+        impl From<$of_c> for params::$of_rust {
+            fn from(from: $of_c) -> Self {
+                Self { $($field: from.$field.into()),* }
+            }
+        }
+    )*};
+}
+same_fields! {
+    Highlight = Highlight { color, intensity, shift_deg, width_deg }
+    Transmission = Transmission { color, intensity, shift_deg, width_deg, azimuthal_width_deg }
+    Glints = Glints { strength, separation_deg, azimuthal_width_deg }
+    Artist = ArtistControls { primary, transmission, secondary, glints }
+}
+
 /// `hairis_artist_init`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_artist_init(to: *mut Artist) {
-    let highlight = |from: &params::Highlight| Highlight {
-        color: from.color,
-        intensity: from.intensity,
-        shift_deg: from.shift_deg,
-        width_deg: from.width_deg,
-    };
-    let controls = ArtistControls::default();
-    let (tt, glints) = (&controls.transmission, &controls.glints);
-    let artist = Artist {
-        primary: highlight(&controls.primary),
-        transmission: Transmission {
-            color: tt.color,
-            intensity: tt.intensity,
-            shift_deg: tt.shift_deg,
-            width_deg: tt.width_deg,
-            azimuthal_width_deg: tt.azimuthal_width_deg,
-        },
-        secondary: highlight(&controls.secondary),
-        glints: Glints {
-            strength: glints.strength,
-            separation_deg: glints.separation_deg,
-            azimuthal_width_deg: glints.azimuthal_width_deg,
-        },
-    };
     // SAFETY: the caller's promise.
-    unsafe { to.write(artist) };
-}
-
-/// The artist's controls as Rust has them.
-fn controls(from: &Artist) -> ArtistControls {
-    let highlight = |from: &Highlight| params::Highlight {
-        color: from.color,
-        intensity: from.intensity,
-        shift_deg: from.shift_deg,
-        width_deg: from.width_deg,
-    };
-    let (tt, glints) = (&from.transmission, &from.glints);
-    ArtistControls {
-        primary: highlight(&from.primary),
-        transmission: params::Transmission {
-            color: tt.color,
-            intensity: tt.intensity,
-            shift_deg: tt.shift_deg,
-            width_deg: tt.width_deg,
-            azimuthal_width_deg: tt.azimuthal_width_deg,
-        },
-        secondary: highlight(&from.secondary),
-        glints: params::Glints {
-            strength: glints.strength,
-            separation_deg: glints.separation_deg,
-            azimuthal_width_deg: glints.azimuthal_width_deg,
-        },
-    }
+    unsafe { to.write(ArtistControls::default().into()) };
 }
 
 /// `hairis_params_set_artist`.
@@ -87,7 +59,7 @@ pub unsafe extern "C" fn hairis_params_set_artist(
         // SAFETY: the caller's promise.
         return unsafe { refuse(error, ARGUMENT, &Fault::of("model"), message) };
     };
-    match HairParams::from_artist(&controls(from)) {
+    match HairParams::from_artist(&(*from).into()) {
         Ok(hair) => {
             // SAFETY: the caller's promise.
             unsafe { params.write(params_of(id, &hair.values())) };

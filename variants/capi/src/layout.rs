@@ -211,7 +211,7 @@ structs! {
     /// Material of any model: a head with the tag, and the Rust handle behind it.
     #[repr(align(16))]
     RawMaterial = "hairis_material" {
-        /// Tag of the model, and the energy.
+        /// Tag of the model.
         head: [u32; 4],
         /// Constants of the material.
         body: [u8; MATERIAL_SIZE - HEAD_SIZE],

@@ -132,7 +132,8 @@ pub unsafe extern "C" fn hairis_preset_name(
 }
 
 /// The parameters of values.
-pub(crate) fn params_of(id: ModelId, values: &Values) -> Params {
+#[must_use]
+pub fn params_of(id: ModelId, values: &Values) -> Params {
     let mut params = Params {
         model: id as u32,
         given: 0,
@@ -149,8 +150,12 @@ pub(crate) fn params_of(id: ModelId, values: &Values) -> Params {
     params
 }
 
-/// The model and the values of parameters, or the refusal of those that were not initialised.
-pub(crate) unsafe fn values_of(
+/// The model and the values of parameters.
+///
+/// # Errors
+///
+/// The code of the refusal, if the parameters were not initialised.
+pub unsafe fn values_of(
     params: *const Params,
     error: *mut Error,
 ) -> Result<(ModelId, Values), i32> {
@@ -348,7 +353,7 @@ pub(crate) unsafe fn refuse_value(error: *mut Error, fault: &ParamError) -> i32 
     unsafe { refuse(error, VALUE, &place, fault) }
 }
 
-/// The material of values: the only place that reads the energy which the host asks for, but for the head's.
+/// The material of values: the only place that reads the energy which the host asks for.
 fn build<M: Registered>(
     values: &Values,
     energy: u32,
@@ -388,11 +393,10 @@ pub unsafe extern "C" fn hairis_material_init(
         assert_fits::<M>();
         // SAFETY: the values outlive the call.
         let material = build::<M>(unsafe { &*values }, energy)?;
-        let energy = if !M::CONSERVES { energy } else { ENERGY_RAW };
         // SAFETY: the caller's promise; the handle fits.
         unsafe {
             to.write_bytes(0, 1);
-            (&raw mut (*to).head).write([models::tag(ModelId::of::<M>()), energy, 0, 0]);
+            (&raw mut (*to).head).write([models::tag(ModelId::of::<M>()), 0, 0, 0]);
             (&raw mut (*to).body).cast::<Material<Conserving<M>>>().write(material);
         }
         Ok(())

@@ -7,8 +7,8 @@
 (3, 1000)
 
 Directions point away from the fibre, in its frame: u along it from root to tip, v and w across. `wo` is towards the viewer, `wi`
-towards the light. Columns are float32 of shape (3, N) or (N,), C-contiguous; nothing is converted. Calls release the interpreter's
-lock: threads are the caller's.
+towards the light. Columns are float32 of shape (3, N) or (N,), C-contiguous and aligned; nothing is converted. Calls release the
+interpreter's lock: threads are the caller's.
 """
 
 from ._hairis import Bsdf, Material, level, models

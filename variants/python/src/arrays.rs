@@ -1,6 +1,6 @@
 //! Columns of NumPy: borrowed, never copied.
 
-use hairis_capi::layout::Samples;
+use hairis_capi::layout::{Evals, Samples};
 use numpy::{
     PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
     PyUntypedArrayMethods,
@@ -29,6 +29,14 @@ fn shape(rows: usize, n: Option<usize>) -> String {
     }
 }
 
+/// The columns of an evaluation as C has them.
+pub(crate) fn evals(outputs: &Outputs<'_>) -> Evals {
+    let [value, [pdf, ..]] = outputs.rows[..] else {
+        unreachable!("two columns")
+    };
+    Evals { value, pdf }
+}
+
 /// The columns of samples as C has them.
 pub(crate) fn samples(outputs: &Outputs<'_>) -> Samples {
     let [wi, value, pdf, weight, lobe] = outputs.rows[..] else {
@@ -45,22 +53,30 @@ pub(crate) fn samples(outputs: &Outputs<'_>) -> Samples {
 
 /// The exception of an array that is not what it must be.
 fn refused(name: &str, rows: usize, n: Option<usize>, got: &Bound<'_, PyAny>) -> PyErr {
-    let is_contiguous =
-        || -> PyResult<bool> { got.getattr("flags")?.getattr("c_contiguous")?.extract() };
-    let what = match (got.getattr("dtype"), got.getattr("shape"), is_contiguous()) {
-        (Ok(dtype), Ok(shape), Ok(contiguous)) => {
-            let order = if contiguous { "" } else { ", not C-contiguous" };
-            format!("{dtype} of shape {shape}{order}")
+    let flag = |name| -> PyResult<bool> { got.getattr("flags")?.getattr(name)?.extract() };
+    let what = match (
+        got.getattr("dtype"),
+        got.getattr("shape"),
+        flag("c_contiguous"),
+        flag("aligned"),
+    ) {
+        (Ok(dtype), Ok(shape), Ok(is_contiguous), Ok(is_aligned)) => {
+            let layout = match (is_contiguous, is_aligned) {
+                (false, _) => ", not C-contiguous",
+                (true, false) => ", not aligned",
+                (true, true) => "",
+            };
+            format!("{dtype} of shape {shape}{layout}")
         }
         _ => got.get_type().to_string(),
     };
     PyTypeError::new_err(format!(
-        "{name} must be float32 of shape {}, C-contiguous; got {what}",
+        "{name} must be float32 of shape {}, C-contiguous and aligned; got {what}",
         shape(rows, n)
     ))
 }
 
-/// The array, if it is one of float32 with this shape, C-contiguous.
+/// The array, if it is one of float32 with this shape, C-contiguous and aligned.
 fn cast<'a, 'py>(
     name: &str,
     rows: usize,
@@ -75,7 +91,8 @@ fn cast<'a, 'py>(
         [len] => rows == 1 && n.is_none_or(|n| n == *len),
         _ => false,
     };
-    if fits && array.is_c_contiguous() {
+    // NumPy calls every empty array aligned; slices have an aligned start even then.
+    if fits && array.is_c_contiguous() && array.data().is_aligned() {
         Ok(array)
     } else {
         Err(refused(name, rows, n, any))
@@ -115,7 +132,9 @@ impl<'py> Input<'py> {
 
     /// The rows; of a column of one row, that and two empty ones.
     pub(crate) fn slices(&self) -> [&[f32]; 3] {
-        let all = self.array.as_slice().unwrap_or_default();
+        let Ok(all) = self.array.as_slice() else {
+            unreachable!("contiguous and aligned")
+        };
         let row = |row: usize| {
             all.get(row * self.n..(row + 1) * self.n)
                 .unwrap_or_default()

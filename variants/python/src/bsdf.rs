@@ -1,9 +1,9 @@
 //! Materials at a hit.
 
-use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, samples};
+use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, evals, samples};
 use crate::fields::double;
 use crate::material::Material;
-use hairis_capi::layout::{BSDF_SIZE, Evals, LobeResult, RawBsdf};
+use hairis_capi::layout::{BSDF_SIZE, LobeResult, RawBsdf};
 use hairis_capi::{columns, points};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -49,22 +49,21 @@ impl Bsdf {
     }
 
     /// Names of the lobes that are kept.
-    fn kept(&self) -> Vec<String> {
-        let names = self
-            .material
-            .get()
-            .described()
-            .lobes()
-            .into_iter()
-            .enumerate();
+    fn kept(&self) -> Vec<&'static str> {
+        let names = self.names().iter().enumerate();
         names
             .filter(|(slot, _)| self.lobes >> slot & 1 == 1)
-            .map(|(_, name)| name)
+            .map(|(_, name)| *name)
             .collect()
     }
 
     fn is_whole(&self) -> bool {
-        self.kept().len() == self.material.get().described().lobes().len()
+        self.kept().len() == self.names().len()
+    }
+
+    /// Names of the lobes of the model, by slot.
+    fn names(&self) -> &'static [&'static str] {
+        self.material.get().id.lobes()
     }
 }
 
@@ -81,14 +80,7 @@ impl Bsdf {
         // SAFETY: the BSDF is prepared.
         unsafe { points::hairis_albedo(&raw const self.raw, &raw mut lobes) };
         let by_name = PyDict::new(py);
-        for (name, rgb) in self
-            .material
-            .get()
-            .described()
-            .lobes()
-            .into_iter()
-            .zip(lobes)
-        {
+        for (name, rgb) in self.names().iter().zip(lobes) {
             by_name.set_item(name, PyTuple::new(py, rgb.map(double))?)?;
         }
         Ok(by_name)
@@ -112,14 +104,7 @@ impl Bsdf {
         // SAFETY: the BSDF is prepared.
         unsafe { points::hairis_lobes(&raw const self.raw, wi[0], wi[1], wi[2], &raw mut lobes) };
         let by_name = PyDict::new(py);
-        for (name, lobe) in self
-            .material
-            .get()
-            .described()
-            .lobes()
-            .into_iter()
-            .zip(lobes)
-        {
+        for (name, lobe) in self.names().iter().zip(lobes) {
             let color = PyTuple::new(py, lobe.color.map(double))?;
             by_name.set_item(name, (double(lobe.value), color, double(lobe.pdf)))?;
         }
@@ -134,7 +119,7 @@ impl Bsdf {
     /// >>> bsdf.albedo()["tt"]
     /// (0.0, 0.0, 0.0)
     fn with_lobes(&self, names: Vec<String>) -> PyResult<Self> {
-        let known = self.material.get().described().lobes();
+        let known = self.names();
         let mut lobes = 0;
         for name in &names {
             let Some(slot) = known.iter().position(|one| one == name) else {
@@ -190,10 +175,7 @@ impl Bsdf {
         let wi = Input::new("wi", wi, 3, None)?;
         let n = wi.n;
         let outputs = Outputs::new(py, out, &EVALS, n)?;
-        let [value, pdf] = outputs.rows[..] else {
-            unreachable!("two columns")
-        };
-        let (raw, rows, to) = (&raw const self.raw, wi.rows(), Evals { value, pdf: pdf[0] });
+        let (raw, rows, to) = (&raw const self.raw, wi.rows(), evals(&outputs));
         // SAFETY: the arrays have n numbers in each row, and are borrowed.
         Detached(move || unsafe {
             columns::hairis_eval_columns(raw, n, &raw const rows, &raw const to)

@@ -1,7 +1,6 @@
 //! Derivatives of values by the fields of a material, by directions and by offsets.
 
 use crate::arrays::Input;
-use crate::fields::Value;
 use hairis::columns::HitColumns;
 use hairis::model::Model;
 use hairis::{Gaussian, Matched, ParamError, Published};
@@ -31,28 +30,6 @@ impl Refusal {
             Self::Columns(error) => error.to_string(),
         })
     }
-}
-
-/// Values of a model's fields, as its library has them.
-pub(crate) fn values_of(
-    model: &str,
-    word: &str,
-    given: impl Iterator<Item = (String, Value)>,
-) -> Option<(ModelId, Values)> {
-    let id = ModelId::find(model, (!word.is_empty()).then_some(word))?;
-    let mut values = Values::none(id.fields());
-    for (name, value) in given {
-        let set = match value {
-            Value::Number(x) => values.set(&name, &[x as f32]),
-            Value::Numbers(numbers) => {
-                let numbers: Vec<f32> = numbers.iter().map(|x| *x as f32).collect();
-                values.set(&name, &numbers)
-            }
-            Value::Word(word) => values.set_word(&name, &word),
-        };
-        set.ok()?;
-    }
-    Some((id, values))
 }
 
 /// The columns that a call reads: hits, directions, and derivatives of a loss by each value.
@@ -123,20 +100,4 @@ pub(crate) unsafe fn eval_grad(
         };
     }
     hairis_variants::for_each_model!(each)
-}
-
-/// The derivatives by the fields that are given, as Python has them.
-pub(crate) fn fields_of(derivatives: &Values<f64>) -> Vec<(&'static str, Value)> {
-    let fields = derivatives.fields();
-    let kept = (0..fields.len()).filter(|index| derivatives.has_at(*index));
-    kept.filter_map(|index| {
-        let numbers = derivatives.numbers_at(index);
-        let value = match (fields[index].kind, numbers) {
-            (hairis_variants::Kind::Word(_), _) => return None,
-            (_, [x]) => Value::Number(*x),
-            _ => Value::Numbers(numbers.to_vec()),
-        };
-        Some((fields[index].name, value))
-    })
-    .collect()
 }

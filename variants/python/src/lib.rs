@@ -1,6 +1,6 @@
 //! Python module over the calls of the C interface: NumPy in, NumPy out.
 //!
-//! Columns are float32 of shape (3, N) or (N,), C-contiguous: nothing is converted or copied, anything else is refused.
+//! Columns are float32 of shape (3, N) or (N,), C-contiguous and aligned: nothing is converted or copied, anything else is refused.
 #![allow(unsafe_code, reason = "calls of the C interface on arrays of NumPy")]
 
 mod arrays;
@@ -11,7 +11,9 @@ mod material;
 mod values;
 
 use bsdf::Bsdf;
-use fields::{Model, models_of_library};
+use fields::double;
+use hairis::simd::Level;
+use hairis_variants::{Kind, ModelId};
 use material::Material;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -23,11 +25,8 @@ use pyo3::types::PyDict;
 /// >>> isinstance(hairis.level(), str)
 /// True
 #[pyfunction]
-fn level() -> String {
-    let mut text = [0; 32];
-    // SAFETY: the array has this size.
-    unsafe { hairis_capi::setup::hairis_level_name(text.as_mut_ptr(), text.len()) };
-    fields::text(&text)
+fn level() -> &'static str {
+    Level::detect().name()
 }
 
 /// Models by name: their choices, presets, lobes and fields.
@@ -48,46 +47,44 @@ fn level() -> String {
 #[pyfunction]
 fn models(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let all = PyDict::new(py);
-    for model in models_of_library() {
-        let name = model.name();
-        if let Some(first) = all.get_item(&name)? {
-            let choices = first.cast_into::<PyDict>()?.get_item("choices")?;
-            choices
-                .map(|list| list.call_method1("append", (model.word(),)))
-                .transpose()?;
-            continue;
-        }
+    for model in ModelId::defaults_of_names() {
+        let of_name = ModelId::ALL.iter().filter(|id| id.name() == model.name());
+        let choices: Vec<_> = of_name.filter_map(|id| Some(id.choice()?.1)).collect();
+        let presets: Vec<_> = model.presets().map(|(name, _)| name).collect();
         let one = PyDict::new(py);
-        one.set_item("choice", model.choice())?;
-        one.set_item(
-            "choices",
-            model
-                .choice()
-                .map(|_| vec![model.word()])
-                .unwrap_or_default(),
-        )?;
-        one.set_item("presets", model.presets())?;
+        one.set_item("choice", model.choice().map(|(field, _)| field))?;
+        one.set_item("choices", choices)?;
+        one.set_item("presets", presets)?;
         one.set_item("lobes", model.lobes())?;
         one.set_item("near_field", model.is_near_field())?;
-        one.set_item("fields", described(py, &model)?)?;
-        all.set_item(name, one)?;
+        one.set_item("fields", described(py, model)?)?;
+        all.set_item(model.name(), one)?;
     }
     Ok(all)
 }
 
 /// The fields of a model, by name.
-fn described<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDict>> {
+fn described(py: Python<'_>, model: ModelId) -> PyResult<Bound<'_, PyDict>> {
     let all = PyDict::new(py);
     for field in model.fields() {
+        let (kind, labels) = match field.kind {
+            Kind::Number => ("number", &[][..]),
+            Kind::Numbers(labels) => ("numbers", labels),
+            Kind::Rgb => ("rgb", &[][..]),
+            Kind::Word(words) => ("word", words),
+        };
+        let range = field
+            .range()
+            .map(|range| <(f64, f64)>::from(range.map(double)));
         let one = PyDict::new(py);
-        one.set_item("kind", field.kind_name())?;
-        one.set_item("labels", field.labels())?;
-        one.set_item("range", field.range())?;
-        one.set_item("unit", field.unit())?;
-        one.set_item("optional", field.is_optional())?;
-        one.set_item("instead_of", field.instead_of())?;
-        one.set_item("doc", field.doc())?;
-        all.set_item(field.name(), one)?;
+        one.set_item("kind", kind)?;
+        one.set_item("labels", labels)?;
+        one.set_item("range", range)?;
+        one.set_item("unit", field.unit)?;
+        one.set_item("optional", field.optional)?;
+        one.set_item("instead_of", field.instead_of)?;
+        one.set_item("doc", field.doc)?;
+        all.set_item(field.name, one)?;
     }
     Ok(all)
 }

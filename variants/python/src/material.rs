@@ -1,13 +1,15 @@
 //! Materials.
 
-use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, samples};
+use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, evals, samples};
 use crate::bsdf::Bsdf;
-use crate::fields::{Model, Value, check, double, models_of_library, no_error};
+use crate::fields::{Value, check, double, fields_of, no_error};
 use crate::gradients::{self, GRADIENTS, Inputs};
 use crate::values::{energy_of, params_of, written};
 use core::fmt::Write;
-use hairis_capi::layout::{Evals, Hits, MATERIAL_SIZE, Params, RawMaterial};
+use hairis_capi::layout::{Hits, MATERIAL_SIZE, Params, RawMaterial};
 use hairis_capi::{hits, setup};
+use hairis_materials::MaterialSpec;
+use hairis_variants::{ModelId, Values};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -45,20 +47,70 @@ use pyo3::types::{PyDict, PyTuple};
 #[pyclass(frozen, module = "hairis")]
 pub(crate) struct Material {
     pub(crate) raw: RawMaterial,
-    params: Params,
+    pub(crate) id: ModelId,
+    values: Values,
     energy: &'static str,
 }
 
+/// The columns of hits that a call reads: `wo`, directions or uniform numbers, and `h`.
+type Columns<'py> = (Input<'py>, Input<'py>, Option<Input<'py>>);
+
+/// A call of the C interface on hits, which writes columns `T`.
+type Call<T> = unsafe extern "C" fn(
+    *const RawMaterial,
+    usize,
+    usize,
+    *const Hits,
+    *const [*const f32; 3],
+    *const T,
+) -> i32;
+
 impl Material {
-    pub(crate) fn described(&self) -> Model {
-        Model::at(self.params.model)
+    /// The material of parameters, and of an energy with its code.
+    fn of(params: &Params, (energy, code): (&'static str, u32)) -> PyResult<Self> {
+        let mut error = no_error();
+        let mut raw = RawMaterial {
+            head: [0; 4],
+            body: [0; MATERIAL_SIZE - 16],
+        };
+        // SAFETY: the arguments are of this call.
+        let (status, read) = unsafe {
+            let status = setup::hairis_material_init(&raw mut raw, params, code, &raw mut error);
+            (status, setup::values_of(params, core::ptr::null_mut()))
+        };
+        check(status, &error)?;
+        let Ok((id, values)) = read else {
+            unreachable!("the material is made of them")
+        };
+        Ok(Self {
+            raw,
+            id,
+            values,
+            energy,
+        })
     }
 
     /// The fields that have a value.
-    fn given(&self) -> impl Iterator<Item = (String, Value)> {
-        let params = self.params;
-        let fields = self.described().fields().into_iter();
-        fields.filter_map(move |field| Some((field.name(), field.value(&params)?)))
+    fn given(&self) -> Vec<(&'static str, Value)> {
+        fields_of(&self.values.map(double))
+    }
+
+    /// Calls the C interface on hits. The caller borrows the arrays of `to`.
+    fn call<T>(
+        &self,
+        py: Python<'_>,
+        (wo, third, h): &Columns<'_>,
+        to: &T,
+        call: Call<T>,
+    ) -> PyResult<()> {
+        let hits = Hits {
+            wo: wo.rows(),
+            h: h.as_ref().map_or(core::ptr::null(), |h| h.rows()[0]),
+            index: core::ptr::null(),
+        };
+        let (raw, n, rows) = (&raw const self.raw, wo.n, third.rows());
+        // SAFETY: the arrays have n numbers in each row, and are borrowed.
+        Detached(move || unsafe { call(raw, 1, n, &raw const hits, &raw const rows, to) }).run(py)
     }
 
     /// The columns of hits: `wo`, `h` and the third, of one length.
@@ -66,7 +118,7 @@ impl Material {
         wo: &Bound<'py, PyAny>,
         third: (&str, &Bound<'py, PyAny>),
         h: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<(Input<'py>, Input<'py>, Option<Input<'py>>)> {
+    ) -> PyResult<Columns<'py>> {
         let wo = Input::new("wo", wo, 3, None)?;
         let n = Some(wo.n);
         let third = Input::new(third.0, third.1, 3, n)?;
@@ -75,10 +127,10 @@ impl Material {
 }
 
 /// Values by name: a float, a tuple of floats or a word each.
-fn dict_of<'py, N: IntoPyObject<'py>>(
-    py: Python<'py>,
-    values: impl IntoIterator<Item = (N, Value)>,
-) -> PyResult<Bound<'py, PyDict>> {
+fn dict_of(
+    py: Python<'_>,
+    values: impl IntoIterator<Item = (&'static str, Value)>,
+) -> PyResult<Bound<'_, PyDict>> {
     let dict = PyDict::new(py);
     for (name, value) in values {
         match value {
@@ -100,26 +152,17 @@ impl Material {
         energy: &str,
         fields: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let (energy, code) = energy_of(energy)?;
-        let (params, mut error) = (params_of(model, preset, fields)?, no_error());
-        let mut raw = RawMaterial {
-            head: [0; 4],
-            body: [0; MATERIAL_SIZE - 16],
-        };
-        // SAFETY: the arguments are of this call.
-        let status = unsafe {
-            setup::hairis_material_init(&raw mut raw, &raw const params, code, &raw mut error)
-        };
-        check(status, &error)?;
-        Ok(Self {
-            raw,
-            params,
-            energy,
-        })
+        let energy = energy_of(energy)?;
+        Self::of(&params_of(model, preset, fields)?, energy)
     }
 
-    /// A material from an object of `hairis eval`: "model", "params", and the field of its choice. Other fields of a request
-    /// are ignored.
+    /// A material from an object of `hairis eval`: "model", "params", and the field of its choice. The fields of a query are
+    /// ignored.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     A material that `hairis eval` refuses: a field is missing, unknown, given twice or out of its range. The message names it.
     ///
     /// Examples
     /// --------
@@ -128,27 +171,16 @@ impl Material {
     /// True
     #[staticmethod]
     #[pyo3(signature = (text, *, energy="conserving"))]
-    fn from_json(py: Python<'_>, text: &str, energy: &str) -> PyResult<Self> {
-        let object = py.import("json")?.call_method1("loads", (text,))?;
-        let object = object.cast_into::<PyDict>()?;
-        let missing = |name| PyValueError::new_err(format!("the object must have \"{name}\""));
-        let model: String = object
-            .get_item("model")?
-            .ok_or_else(|| missing("model"))?
-            .extract()?;
-        let params = object
-            .get_item("params")?
-            .ok_or_else(|| missing("params"))?;
-        let fields = params.cast_into::<PyDict>()?.copy()?;
-        let choice = models_of_library()
-            .find(|one| one.name() == model)
-            .and_then(|one| one.choice());
-        if let Some(choice) = choice
-            && let Some(word) = object.get_item(&choice)?
-        {
-            fields.set_item(choice, word)?;
-        }
-        Self::new(&model, None, energy, Some(&fields))
+    fn from_json(text: &str, energy: &str) -> PyResult<Self> {
+        let materials = MaterialSpec::parse_all(text).map_err(PyValueError::new_err)?;
+        let [material] = &materials[..] else {
+            let count = materials.len();
+            return Err(PyValueError::new_err(format!(
+                "text must have one material, got {count}"
+            )));
+        };
+        let params = setup::params_of(material.model, &material.values);
+        Self::of(&params, energy_of(energy)?)
     }
 
     /// The material as an object of `hairis eval`, in one line. Energy is not part of it.
@@ -158,32 +190,31 @@ impl Material {
     /// >>> hairis.Material("kajiya-kay", "brown").to_json()[:34]
     /// '{"model": "kajiya-kay", "params": '
     fn to_json(&self) -> String {
-        let model = self.described();
-        let choice = model.choice().map_or_else(String::new, |choice| {
-            format!(" \"{choice}\": \"{}\",", model.word())
+        let choice = self.id.choice().map_or_else(String::new, |(field, word)| {
+            format!(" \"{field}\": \"{word}\",")
         });
-        let params: Vec<_> = self
-            .given()
-            .map(|(name, value)| format!("\"{name}\": {}", written(&value, true)))
+        let given = self.given();
+        let params: Vec<_> = given
+            .iter()
+            .map(|(name, value)| format!("\"{name}\": {}", written(value, true)))
             .collect();
         format!(
             "{{\"model\": \"{}\",{choice} \"params\": {{{}}}}}",
-            model.name(),
+            self.id.name(),
             params.join(", ")
         )
     }
 
     /// Name of the model.
     #[getter]
-    fn model(&self) -> String {
-        self.described().name()
+    fn model(&self) -> &'static str {
+        self.id.name()
     }
 
     /// How directions are sampled: the word of "sampler" or "select"; None where there is no choice.
     #[getter]
-    fn choice(&self) -> Option<String> {
-        let model = self.described();
-        model.choice().map(|_| model.word())
+    fn choice(&self) -> Option<&'static str> {
+        self.id.choice().map(|(_, word)| word)
     }
 
     /// "raw", "conserving" or "scaled".
@@ -200,14 +231,14 @@ impl Material {
 
     /// Names of the lobes, by slot: the numbers in the column "lobe" of samples.
     #[getter]
-    fn lobe_names(&self) -> Vec<String> {
-        self.described().lobes()
+    fn lobe_names(&self) -> &'static [&'static str] {
+        self.id.lobes()
     }
 
     /// Whether the model reads `h`, the offset of a hit across the fibre.
     #[getter]
     fn near_field(&self) -> bool {
-        self.described().is_near_field()
+        self.id.is_near_field()
     }
 
     /// The largest directional albedo, without the factor of energy "conserving": above 1, the model gains light.
@@ -268,31 +299,9 @@ impl Material {
         h: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (wo, wi, h) = Self::inputs(wo, ("wi", wi), h)?;
-        let n = wo.n;
-        let outputs = Outputs::new(py, out, &EVALS, n)?;
-        let [value, pdf] = outputs.rows[..] else {
-            unreachable!("two columns")
-        };
-        let h_rows = h.as_ref().map_or(core::ptr::null(), |h| h.rows()[0]);
-        let columns = Hits {
-            wo: wo.rows(),
-            h: h_rows,
-            index: core::ptr::null(),
-        };
-        let (raw, wi_rows, to) = (&raw const self.raw, wi.rows(), Evals { value, pdf: pdf[0] });
-        // SAFETY: the arrays have n numbers in each row, and are borrowed.
-        Detached(move || unsafe {
-            hits::hairis_eval_hits(
-                raw,
-                1,
-                n,
-                &raw const columns,
-                &raw const wi_rows,
-                &raw const to,
-            )
-        })
-        .run(py)?;
+        let inputs = Self::inputs(wo, ("wi", wi), h)?;
+        let outputs = Outputs::new(py, out, &EVALS, inputs.0.n)?;
+        self.call(py, &inputs, &evals(&outputs), hits::hairis_eval_hits)?;
         Ok(outputs.dict)
     }
 
@@ -332,29 +341,9 @@ impl Material {
         h: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (wo, xi, h) = Self::inputs(wo, ("xi", xi), h)?;
-        let n = wo.n;
-        let outputs = Outputs::new(py, out, &SAMPLES, n)?;
-        let to = samples(&outputs);
-        let h_rows = h.as_ref().map_or(core::ptr::null(), |h| h.rows()[0]);
-        let columns = Hits {
-            wo: wo.rows(),
-            h: h_rows,
-            index: core::ptr::null(),
-        };
-        let (raw, xi_rows) = (&raw const self.raw, xi.rows());
-        // SAFETY: the arrays have n numbers in each row, and are borrowed.
-        Detached(move || unsafe {
-            hits::hairis_sample_hits(
-                raw,
-                1,
-                n,
-                &raw const columns,
-                &raw const xi_rows,
-                &raw const to,
-            )
-        })
-        .run(py)?;
+        let inputs = Self::inputs(wo, ("xi", xi), h)?;
+        let outputs = Outputs::new(py, out, &SAMPLES, inputs.0.n)?;
+        self.call(py, &inputs, &samples(&outputs), hits::hairis_sample_hits)?;
         Ok(outputs.dict)
     }
 
@@ -403,10 +392,7 @@ impl Material {
         let (wo, wi, h) = Self::inputs(wo, ("wi", wi), h)?;
         let d_value = Input::new("d_value", d_value, 3, Some(wo.n))?;
         let outputs = Outputs::new(py, out, &GRADIENTS, wo.n)?;
-        let model = self.described();
-        let read = gradients::values_of(&model.name(), &model.word(), self.given());
-        let (id, values) =
-            read.ok_or_else(|| PyValueError::new_err("the model has no derivatives"))?;
+        let (id, values) = (self.id, &self.values);
         let (inputs, is_raw) = (
             Inputs {
                 wo: &wo,
@@ -420,7 +406,7 @@ impl Material {
         let to = &mut done;
         Detached(move || {
             // SAFETY: the arrays have n numbers in each row, and are borrowed.
-            *to = Some(unsafe { gradients::eval_grad(id, &values, is_raw, &inputs, rows) });
+            *to = Some(unsafe { gradients::eval_grad(id, values, is_raw, &inputs, rows) });
             0
         })
         .run(py)?;
@@ -429,19 +415,19 @@ impl Material {
             Some(Err(refusal)) => return Err(refusal.raise(self.energy)),
             None => unreachable!("the call ran"),
         };
-        let d_fields = dict_of(py, gradients::fields_of(&derivatives))?;
-        Ok((outputs.dict, d_fields))
+        let d_fields = fields_of(&derivatives).into_iter();
+        let numbers = d_fields.filter(|(_, value)| !matches!(value, Value::Word(_)));
+        Ok((outputs.dict, dict_of(py, numbers)?))
     }
 
     pub(crate) fn __repr__(&self) -> String {
-        let model = self.described();
         let mut text = format!(
             "hairis.Material(\"{}\", energy=\"{}\"",
-            model.name(),
+            self.id.name(),
             self.energy
         );
-        if let Some(choice) = model.choice() {
-            let _ = write!(text, ", {choice}=\"{}\"", model.word());
+        if let Some((field, word)) = self.id.choice() {
+            let _ = write!(text, ", {field}=\"{word}\"");
         }
         for (name, value) in self.given() {
             let _ = write!(text, ", {name}={}", written(&value, false));
@@ -450,10 +436,8 @@ impl Material {
     }
 
     fn __eq__(&self, other: &Self) -> bool {
-        let bits = |params: &Params| params.numbers.map(f32::to_bits);
-        self.energy == other.energy
-            && (self.params.model, self.params.given) == (other.params.model, other.params.given)
-            && bits(&self.params) == bits(&other.params)
+        let bits = |of: &Self| of.values.map(f32::to_bits);
+        (self.id, self.energy) == (other.id, other.energy) && bits(self) == bits(other)
     }
 
     fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
@@ -461,12 +445,15 @@ impl Material {
     }
 
     /// Arguments of the call that makes the same material: for pickle and copy.
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((String,), Bound<'py, PyDict>)> {
-        let (model, arguments) = (self.described(), self.fields(py)?);
+    fn __getnewargs_ex__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<((&'static str,), Bound<'py, PyDict>)> {
+        let arguments = self.fields(py)?;
         arguments.set_item("energy", self.energy)?;
-        if let Some(choice) = model.choice() {
-            arguments.set_item(choice, model.word())?;
+        if let Some((field, word)) = self.id.choice() {
+            arguments.set_item(field, word)?;
         }
-        Ok(((model.name(),), arguments))
+        Ok(((self.id.name(),), arguments))
     }
 }

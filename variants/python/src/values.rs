@@ -1,11 +1,10 @@
 //! Values between Python and the C interface.
 
-use crate::fields::{Field, Model, Value, check, models_of_library, no_error};
+use crate::fields::{Value, check, no_error};
 use core::ffi::CStr;
-use hairis_capi::layout::{
-    ENERGY_CONSERVING, ENERGY_RAW, ENERGY_SCALED, KIND_NUMBER, KIND_WORD, Params,
-};
+use hairis_capi::layout::{ENERGY_CONSERVING, ENERGY_RAW, ENERGY_SCALED, Params};
 use hairis_capi::setup;
+use hairis_variants::{Field, Kind, ModelId};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -38,15 +37,13 @@ pub(crate) fn params_of(
     preset: Option<&str>,
     fields: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Params> {
-    let choice = models_of_library()
-        .find(|one| one.name() == model)
-        .and_then(|one| one.choice());
-    let given = |name: &str| fields.map_or(Ok(None), |fields| fields.get_item(name));
-    let word: Option<String> = match &choice {
-        Some(choice) => given(choice)?.map(|word| word.extract()).transpose()?,
-        None => None,
+    let choice = ModelId::find(model, None).and_then(ModelId::choice);
+    let choice = choice.map(|(field, _)| field);
+    let word = match (choice, fields) {
+        (Some(choice), Some(fields)) => fields.get_item(choice)?.map(|word| word_of(choice, &word)),
+        _ => None,
     };
-    let word = word.map(|word| c_string(&word)).transpose()?;
+    let word = word.transpose()?;
     let (model, preset) = (c_string(model)?, preset.map(c_string).transpose()?);
     let pointer = |text: &Option<CString>| text.as_deref().map_or(core::ptr::null(), CStr::as_ptr);
     let mut error = no_error();
@@ -61,57 +58,62 @@ pub(crate) fn params_of(
         setup::hairis_params_init(&raw mut params, names.0, names.1, names.2, &raw mut error)
     };
     check(status, &error)?;
-    let known = Model::at(params.model).fields();
-    let mut heads: Vec<(String, String)> = Vec::new();
+    let known = ModelId::ALL[params.model as usize].fields();
+    let mut heads = Vec::new();
     for (name, value) in fields.into_iter().flatten() {
         let name: String = name.extract()?;
-        if Some(&name) == choice.as_ref() {
+        if Some(&*name) == choice {
             continue;
         }
-        let Some(field) = known.iter().find(|field| field.name() == name) else {
-            let names: Vec<_> = choice
-                .iter()
-                .cloned()
-                .chain(known.iter().map(Field::name))
-                .collect();
+        let Some(field) = known.iter().find(|field| field.name == name) else {
+            let known = known.iter().map(|field| field.name);
+            let names: Vec<_> = choice.into_iter().chain(known).collect();
             let names = names.join(", ");
             return Err(PyValueError::new_err(format!(
                 "field must be one of {names}, got \"{name}\""
             )));
         };
-        if let Some((_, other)) = heads.iter().find(|(head, _)| *head == field.head()) {
+        let head = field.instead_of.unwrap_or(field.name);
+        if let Some((_, other)) = heads.iter().find(|(one, _)| *one == head) {
             return Err(PyValueError::new_err(format!(
                 "{other} and {name} exclude each other; give one"
             )));
         }
-        heads.push((field.head(), name));
+        heads.push((head, name));
         set(&mut params, field, &value)?;
     }
     Ok(params)
 }
 
+/// The exception of a value that is of another type than its field.
+fn wrong(name: &str, what: &str, value: &Bound<'_, PyAny>) -> PyErr {
+    PyTypeError::new_err(format!("{name} must be {what}, got {}", value.get_type()))
+}
+
+/// The word that a field is given.
+fn word_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<CString> {
+    let word: String = value.extract().map_err(|_| wrong(name, "a word", value))?;
+    c_string(&word)
+}
+
 /// Sets a field to a value of Python.
 fn set(params: &mut Params, field: &Field, value: &Bound<'_, PyAny>) -> PyResult<()> {
-    let name = field.name();
-    let (c_name, mut error) = (c_string(&name)?, no_error());
-    let wrong = |what: String| {
-        PyTypeError::new_err(format!("{name} must be {what}, got {}", value.get_type()))
-    };
-    if field.kind() == KIND_WORD {
-        let word: String = value.extract().map_err(|_| wrong("a word".to_owned()))?;
-        let word = c_string(&word)?;
+    let name = field.name;
+    let (c_name, mut error) = (c_string(name)?, no_error());
+    if let Kind::Word(_) = field.kind {
+        let word = word_of(name, value)?;
         // SAFETY: the arguments are of this call.
         let status = unsafe {
             setup::hairis_params_set_word(params, c_name.as_ptr(), word.as_ptr(), &raw mut error)
         };
         return check(status, &error);
     }
-    let numbers: Vec<f64> = if field.kind() == KIND_NUMBER {
-        vec![value.extract().map_err(|_| wrong("a number".to_owned()))?]
+    let numbers: Vec<f64> = if field.kind == Kind::Number {
+        let number = value.extract();
+        vec![number.map_err(|_| wrong(name, "a number", value))?]
     } else {
-        value
-            .extract()
-            .map_err(|_| wrong(format!("{} numbers", field.width())))?
+        let what = format!("{} numbers", field.kind.width());
+        value.extract().map_err(|_| wrong(name, &what, value))?
     };
     let numbers: Vec<f32> = numbers.iter().map(|x| *x as f32).collect();
     // SAFETY: the arguments are of this call.

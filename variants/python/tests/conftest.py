@@ -20,6 +20,11 @@ def bits(a: NDArray[Any]) -> NDArray[np.uint32]:
     return a.view(np.uint32)
 
 
+def unaligned(n: int) -> NDArray[np.float32]:
+    """Return a C-contiguous column of shape (3, n) that starts at an odd address."""
+    return np.zeros(12 * n + 1, np.uint8)[1:].view(np.float32).reshape(3, n)
+
+
 @pytest.fixture
 def xi() -> NDArray[np.float32]:
     """Uniform numbers."""

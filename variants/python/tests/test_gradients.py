@@ -9,7 +9,7 @@ from typing import Any
 import hairis
 import numpy as np
 import pytest
-from conftest import bits, directions
+from conftest import bits, directions, unaligned
 from numpy.typing import NDArray
 
 DEFAULTS = [(name, preset) for name, model in hairis.models().items() for preset in model["presets"][1:3]]
@@ -67,6 +67,8 @@ def test_refusals() -> None:
     raw = hairis.Material("gaussian", "brown", energy="raw")
     with pytest.raises(TypeError, match=r"d_value must be float32 of shape \(3, 10\)"):
         raw.eval_grad(wo, wi, d_value[:, :9])
+    with pytest.raises(TypeError, match="d_value must be .*, not aligned"):
+        raw.eval_grad(wo, wi, unaligned(10))
     with pytest.raises(ValueError, match='out must have some of value, d_wo, d_wi, d_h, got "pdf"'):
         raw.eval_grad(wo, wi, d_value, out={"pdf": np.empty(10, np.float32)})
 
