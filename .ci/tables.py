@@ -119,6 +119,19 @@ def conserving():
     return record, ["Gaussian", *levels], rows
 
 
+def one_lane():
+    """What energy conservation costs one hit, and what one call saves: ns, and the ratio; of a material µs."""
+    record = Record("hits.csv")
+    cells = in_runs(record)
+    models = {"gaussian": "Gaussian", "gaussian-matched": "Gaussian, matched", "cauchy": "Cauchy", "cauchy-matched": "Cauchy, matched"}
+    calls = ["eval_hit: Conserving over raw", "sample_hit: Conserving over raw", "prepare: Conserving over raw",
+             "eval_hit over prepare and eval_pdf", "sample_hit over prepare and sample"]
+    rows = [[call, *(cells[model, call, "one lane"] for model in models)] for call in calls]
+    made = lambda model: statistics.median(float(row["ns"]) for row in record.rows if (row["model"], row["call"]) == (model, "new"))
+    rows.append(["a material with `Conserving`", *(f"{made(model) / 1000:.0f} µs" for model in models)])
+    return record, ["", *models.values()], rows
+
+
 def capi():
     """Calls of the C library over those of Rust: median ratios of raw and conserving materials."""
     record = Record("capi.csv")
@@ -170,7 +183,8 @@ def cuda():
 
 def speed():
     """Times of a direction, and how many times as fast as the formulas."""
-    record = Record("amd-epyc-family-25-model-1-stepping-1/2026-11-22.csv")
+    machine = "amd-epyc-family-25-model-1-stepping-1/"
+    record = Record(machine + max(name for name in os.listdir(RECORDS + machine) if re.fullmatch(r"\d{4}-\d\d-\d\d\.csv", name)))
     times = {(row["group"], row["entry"], row["level"]): float(row["ns"]) for row in record.rows}
     calls = {
         "eval": ("eval_pdf", "eval_pdf8", "eval_columns"),
@@ -223,7 +237,7 @@ def pictures():
     return record, ["", *words.values()], rows
 
 
-TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "gradients": gradients, "hand": hand, "hits": hits, "pictures": pictures, "refits": refits, "speed": speed}
+TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "pictures": pictures, "refits": refits, "speed": speed}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 
