@@ -239,6 +239,13 @@ fn head(field: &Field) -> &'static str {
     field.instead_of.unwrap_or(field.name)
 }
 
+/// The field that values have in place of another one, or that field itself.
+#[must_use]
+pub fn in_place_of(field: &Field, values: &Values) -> Option<&'static Field> {
+    let mut fields = values.fields().iter();
+    fields.find(|other| values.has(other.name) && head(other) == head(field))
+}
+
 /// Checks that every field is given which must be: one of each group.
 fn check_present(fields: &[Field], given: &Fields) -> Result<(), String> {
     for field in fields.iter().filter(|field| field.instead_of.is_none()) {

@@ -13,7 +13,7 @@ use hairis_instruments::machine;
 use hairis_instruments::program::{print, say};
 use hairis_instruments::progress::{Progress, share_bar, show_share};
 use hairis_instruments::report::Report;
-use hairis_materials::material::values_json;
+use hairis_materials::material::{in_place_of, values_json};
 use hairis_variants::{Field, ModelId, Values};
 use serde_json::json;
 use std::fs;
@@ -201,13 +201,10 @@ fn source(flags: &Fit) -> Result<NamedMaterial, Error> {
 
 /// Refuses fixed fields of which the start has another one in their place.
 fn refuse_replaced(config: &FitConfig, start: &Values) -> Result<(), Error> {
-    let head = |field: &Field| field.instead_of.unwrap_or(field.name);
     let is_fixed = |field: &&Field| config.fixed.iter().any(|name| name == field.name);
-    let fields = || start.fields().iter();
-    for field in fields().filter(is_fixed) {
-        let is_instead = |other: &&Field| start.has(other.name) && head(other) == head(field);
+    for field in start.fields().iter().filter(is_fixed) {
         if !start.has(field.name)
-            && let Some(other) = fields().find(is_instead)
+            && let Some(other) = in_place_of(field, start)
         {
             return Err(Error::Usage(format!(
                 "--fix must be a field that the start has, got {:?}; fix {}, which the start has in its place",

@@ -15,7 +15,7 @@ use hairis_instruments::plot::{Axis, Series, lines};
 use hairis_instruments::program::{print, say};
 use hairis_instruments::progress::{share_bar, show_share};
 use hairis_instruments::table::{Table, number};
-use hairis_materials::material::values_json;
+use hairis_materials::material::{in_place_of, values_json};
 use hairis_variants::Field;
 use image::{Rgb, RgbImage};
 use std::collections::BTreeMap;
@@ -115,9 +115,7 @@ fn start(flags: &Flags) -> Result<Choice, Error> {
         let given = |field: &&Field| start.values.has(field.name);
         let is_missing = |field: &&Field| names.contains(&field.name.to_owned()) && !given(field);
         if let Some(field) = fields.iter().find(is_missing) {
-            let head = |field: &Field| field.instead_of.unwrap_or(field.name);
-            let is_instead = |other: &&Field| given(other) && head(other) == head(field);
-            let instead = fields.iter().find(is_instead).map(|other| {
+            let instead = in_place_of(field, &start.values).map(|other| {
                 let name = other.name;
                 format!("; give {name}, which the start has in its place")
             });
