@@ -179,16 +179,10 @@ impl Point {
             first / POOL,
             radiances.len(),
             |candidate, radiance| {
-                let ray = leave(
-                    scene,
-                    &self.hit,
-                    *origin,
-                    candidate.direction,
-                    candidate.cos,
-                    candidate.distance,
-                );
                 let sample = radiances.next();
-                if sees(scene, &ray)
+                let (direction, cos, distance) =
+                    (candidate.direction, candidate.cos, candidate.distance);
+                if self.sees(scene, direction, cos, distance)
                     && let Some(sample) = sample
                 {
                     *sample += count * radiance;
@@ -196,6 +190,20 @@ impl Point {
                 lap(Phase::Rays);
             },
         );
+    }
+
+    /// Whether nothing is in the way of the point, in a direction of inclination `cos_theta`, up to a distance.
+    #[inline]
+    fn sees(&self, scene: &Scene, direction: Vec3, cos_theta: f32, distance: f32) -> bool {
+        let ray = leave(
+            scene,
+            &self.hit,
+            self.origin,
+            direction,
+            cos_theta,
+            distance,
+        );
+        sees(scene, &ray)
     }
 
     fn by_light(
@@ -218,15 +226,9 @@ impl Point {
             let eval = eval.lane(lane);
             let weight = settings.mis.of_light(light.pdf, eval.pdf) * cos / light.pdf;
             let radiance = light.radiance * Vec3::from_array(eval.value) * weight;
-            let ray = leave(
-                scene,
-                &self.hit,
-                self.origin,
-                light.direction,
-                cos,
-                light.distance,
-            );
-            if radiance.max_element() > 0.0 && sees(scene, &ray) {
+            if radiance.max_element() > 0.0
+                && self.sees(scene, light.direction, cos, light.distance)
+            {
                 *sum += radiance;
             }
         }
@@ -260,15 +262,9 @@ impl Point {
             let weight = settings.mis.of_bsdf(pdf, light.pdf);
             let of_bsdf = Vec3::from_array([0, 1, 2].map(|c| sample.weight[c].as_array()[lane]));
             let radiance = light.radiance * of_bsdf * weight;
-            let ray = leave(
-                scene,
-                &self.hit,
-                self.origin,
-                light.direction,
-                cos,
-                light.distance,
-            );
-            if radiance.max_element() > 0.0 && sees(scene, &ray) {
+            if radiance.max_element() > 0.0
+                && self.sees(scene, light.direction, cos, light.distance)
+            {
                 *sum += radiance;
             }
         }
