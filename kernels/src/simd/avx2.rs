@@ -20,6 +20,7 @@ use core::arch::asm;
 use core::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
 use core::arch::x86_64::*;
+use core::mem::transmute;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 use wide::f32x8;
 
@@ -84,9 +85,7 @@ impl Lanes for Avx2 {
     }
     #[inline(always)]
     fn store(self) -> f32x8 {
-        let mut lanes = f32x8::ZERO;
-        avx2!(_mm256_storeu_ps(lanes.as_mut_array().as_mut_ptr(), self.0));
-        lanes
+        f32x8::new(avx2!(transmute::<__m256, [f32; 8]>(self.0)))
     }
     #[inline(always)]
     fn load(stored: &f32x8) -> Self {
@@ -279,7 +278,7 @@ impl Choice<Avx2> for Indices {
     #[inline(always)]
     fn look_up(self, table: &[f32; 4]) -> Avx2 {
         Avx2(avx2!({
-            let four = _mm_loadu_ps(table.as_ptr());
+            let four = transmute::<[f32; 4], __m128>(*table);
             _mm256_permutevar_ps(_mm256_set_m128(four, four), self.number)
         }))
     }
@@ -288,7 +287,7 @@ impl Choice<Avx2> for Indices {
         Avx2(avx2!({
             let offset = _mm256_and_si256(_mm256_castps_si256(upper), _mm256_set1_epi32(4));
             let number = _mm256_or_si256(self.number, offset);
-            _mm256_permutevar8x32_ps(_mm256_loadu_ps(table.as_ptr()), number)
+            _mm256_permutevar8x32_ps(transmute::<[f32; 8], __m256>(*table), number)
         }))
     }
     #[inline(always)]
@@ -299,9 +298,7 @@ impl Choice<Avx2> for Indices {
     fn look_up_half(self, table: &[f32; 2]) -> Avx2 {
         Avx2(avx2!({
             // Either entry in every second lane: the upper of an index's two bits is which.
-            let two = _mm256_castpd_ps(_mm256_set1_pd(
-                table.as_ptr().cast::<f64>().read_unaligned(),
-            ));
+            let two = _mm256_castpd_ps(_mm256_set1_pd(transmute::<[f32; 2], f64>(*table)));
             _mm256_permutevar_ps(two, _mm256_srli_epi32::<1>(self.number))
         }))
     }
@@ -332,8 +329,8 @@ fn interleave(mut a: __m256, mut b: __m256) -> (__m256, __m256) {
 #[target_feature(enable = "avx")]
 #[inline]
 fn two_rows(low: &[f32; 4], high: &[f32; 4]) -> __m256 {
-    // SAFETY: there are four numbers in either row.
-    unsafe { _mm256_loadu2_m128(high.as_ptr(), low.as_ptr()) }
+    // SAFETY: any bits are four numbers.
+    unsafe { _mm256_set_m128(transmute(*high), transmute(*low)) }
 }
 
 /// Two loads of 16 bytes, each of which a store of 16 bytes is forwarded to. From intrinsics the compiler makes one load of 32.
@@ -341,12 +338,13 @@ fn two_rows(low: &[f32; 4], high: &[f32; 4]) -> __m256 {
 #[inline]
 fn load_halves(from: &[f32; 8]) -> __m256 {
     #[cfg(miri)]
-    // SAFETY: there are eight numbers.
-    return unsafe { _mm256_loadu_ps(from.as_ptr()) };
+    // SAFETY: any bits are eight numbers.
+    return unsafe { transmute::<[f32; 8], __m256>(*from) };
     #[cfg(not(miri))]
     // SAFETY: there are eight numbers, and AVX, which the register belongs to, is there.
     unsafe {
-        let mut lanes = _mm256_castps128_ps256(_mm_loadu_ps(from.as_ptr()));
+        let [low, _] = transmute::<[f32; 8], [__m128; 2]>(*from);
+        let mut lanes = _mm256_castps128_ps256(low);
         asm!(
             "vinsertf128 {0}, {0}, xmmword ptr [{1} + 16], 1",
             inout(ymm_reg) lanes,
@@ -360,7 +358,7 @@ fn load_halves(from: &[f32; 8]) -> __m256 {
 impl Packet<8> for Avx2 {
     #[inline(always)]
     fn read(from: &[f32; 8]) -> Self {
-        Self(avx2!(_mm256_loadu_ps(from.as_ptr())))
+        Self(avx2!(transmute::<[f32; 8], __m256>(*from)))
     }
     #[inline(always)]
     fn read_fresh(from: &[f32; 8]) -> Self {
@@ -368,6 +366,6 @@ impl Packet<8> for Avx2 {
     }
     #[inline(always)]
     fn write(self, to: &mut [f32; 8]) {
-        avx2!(_mm256_storeu_ps(to.as_mut_ptr(), self.0));
+        *to = avx2!(transmute::<__m256, [f32; 8]>(self.0));
     }
 }

@@ -19,6 +19,7 @@ use super::table::Entries;
 use core::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
 use core::arch::x86_64::*;
+use core::mem::transmute;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Sixteen lanes. As for [`Avx2`](super::avx2::Avx2), code with this type comes only from below
@@ -237,7 +238,7 @@ impl Choice<Avx512> for Indices16 {
     #[inline(always)]
     fn look_up(self, table: &[f32; 4]) -> Avx512 {
         Avx512(avx512!(_mm512_permutevar_ps(
-            _mm512_broadcast_f32x4(_mm_loadu_ps(table.as_ptr())),
+            _mm512_broadcast_f32x4(transmute::<[f32; 4], __m128>(*table)),
             self.number
         )))
     }
@@ -246,7 +247,7 @@ impl Choice<Avx512> for Indices16 {
         Avx512(avx512!({
             let four = _mm512_set1_epi32(4);
             let number = _mm512_mask_or_epi32(self.number, upper, self.number, four);
-            let eight = _mm512_broadcast_f32x8(_mm256_loadu_ps(table.as_ptr()));
+            let eight = _mm512_broadcast_f32x8(transmute::<[f32; 8], __m256>(*table));
             _mm512_permutexvar_ps(number, eight)
         }))
     }
@@ -258,9 +259,7 @@ impl Choice<Avx512> for Indices16 {
     fn look_up_half(self, table: &[f32; 2]) -> Avx512 {
         Avx512(avx512!({
             // Either entry in every second lane: the upper of an index's two bits is which.
-            let two = _mm512_castpd_ps(_mm512_set1_pd(
-                table.as_ptr().cast::<f64>().read_unaligned(),
-            ));
+            let two = _mm512_castpd_ps(_mm512_set1_pd(transmute::<[f32; 2], f64>(*table)));
             _mm512_permutevar_ps(two, _mm512_srli_epi32::<1>(self.number))
         }))
     }
@@ -276,10 +275,10 @@ impl Broadcast<Self> for Avx512 {
 impl Packet<16> for Avx512 {
     #[inline(always)]
     fn read(from: &[f32; 16]) -> Self {
-        Self(avx512!(_mm512_loadu_ps(from.as_ptr())))
+        Self(avx512!(transmute::<[f32; 16], __m512>(*from)))
     }
     #[inline(always)]
     fn write(self, to: &mut [f32; 16]) {
-        avx512!(_mm512_storeu_ps(to.as_mut_ptr(), self.0));
+        *to = avx512!(transmute::<__m512, [f32; 16]>(self.0));
     }
 }
