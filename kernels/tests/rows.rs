@@ -1,5 +1,7 @@
-//! Bounds of the tests against the reference, one row each, with the worst case measured above it: the larger of a default
-//! build and one for x86-64-v3, over all levels and twelve seeds (`HAIRIS_SEED`). To measure again: `cargo test --workspace -- --nocapture | grep measured`.
+//! Bounds of the tests against the reference, one row each, with the worst case measured above it, over all levels: the larger of a
+//! default build with forty seeds (`HAIRIS_SEED`) and one for x86-64-v3 with twelve. Worst cases that random numbers find still grow
+//! with the number of seeds, so that their bounds are 1.3 to 1.5 times as large.
+//! To measure again: `cargo test --workspace -- --nocapture | grep measured`.
 
 use hairis_conformance::published::Rows;
 
@@ -7,12 +9,12 @@ use hairis_conformance::published::Rows;
 pub(crate) const PUBLISHED: Rows = Rows {
     // 2.0e-5, 8.8e-6, 7.3e-5, 8.7e-6: the efficiency grid, and the presets
     grid: [2.6e-5, 1e-5, 1e-4, 1e-5],
-    // 2.0e-4, 2.0e-5, 2.0e-4, 2.2e-5: every width 0.5 degrees
-    narrow: [2.5e-4, 2.5e-5, 2.5e-4, 2.8e-5],
+    // 2.0e-4, 2.0e-5, 2.0e-4, 2.3e-5: every width 0.5 degrees
+    narrow: [2.5e-4, 2.5e-5, 2.5e-4, 3.4e-5],
     // 7.7e-7, 7.1e-7, 2.0e-6, 9.3e-7: every width 60 degrees
     wide: [1e-6, 9.2e-7, 2.5e-6, 1.2e-6],
-    // 3.5e-7
-    lobe_sum: 4.5e-7,
+    // 4.2e-7
+    lobe_sum: 6e-7,
     // 1.6e-5, 4.8e-6, 1.6e-5
     grid_sample: [2.2e-5, 6.5e-6, 2.2e-5],
     // 1.3e-4, 2.4e-5, 1.3e-4
@@ -27,8 +29,8 @@ pub(crate) const PUBLISHED: Rows = Rows {
     narrow_cdf: [7e-6, 8.1e-6],
     // 2.9e-7, 9.8e-8
     wide_cdf: [4e-7, 1.4e-7],
-    // 5.9e-7, 6.3e-7, 9.6e-7
-    levels: [8e-7, 8e-7, 1.3e-6],
+    // 6.8e-7, 6.3e-7, 9.6e-7
+    levels: [1e-6, 1e-6, 1.3e-6],
     // 4.4e-6; 0 where neither fuses
     // 3.0e-6
     albedo: 4e-6,
@@ -38,44 +40,43 @@ pub(crate) const PUBLISHED: Rows = Rows {
     albedo_mesh: 4e-6,
     // 2.5e-5
     reciprocity: 3.2e-5,
-    // 1.2e-6
-    sample_eval: 1.6e-6,
-    // 1 + 3.3e-7
-    weight_bound: 1.0 + 6e-7,
+    // 1.9e-6
+    sample_eval: 2.8e-6,
+    // 1 + 8.3e-7
+    weight_bound: 1.0 + 1.3e-6,
     integral: [0.0; 3],
     seam: [0.0; 3],
     tail_sample: [0.0; 4],
     off_sphere_sample: [0.0; 3],
     gain: [[0.0; 3]; 3],
-    weight: [0.0; 3],
 };
 
 /// The matched samplers.
 pub(crate) const MATCHED: Rows = Rows {
-    // 2.0e-5 (S is that of the published sampler's model), 1.4e-5, 4.3e-5, 4.3e-5
-    grid: [2.6e-5, 1.9e-5, 5.6e-5, 5.6e-5],
-    // 1e-4, 1e-4, 1.6e-4, 1.6e-4
-    narrow: [1.4e-4, 1.4e-4, 2.1e-4, 2.1e-4],
-    // 6.7e-7, 9e-7, 1.9e-6, 1.9e-6
-    wide: [8.8e-7, 1.2e-6, 2.5e-6, 2.5e-6],
+    // 2.0e-5 (S is that of the published sampler's model), 2.2e-5, 4.3e-5, 4.3e-5
+    grid: [2.8e-5, 2.8e-5, 5.6e-5, 5.6e-5],
+    // 1.2e-4, 1.2e-4, 1.6e-4, 1.6e-4
+    narrow: [1.8e-4, 1.8e-4, 2.1e-4, 2.1e-4],
+    // 7.1e-7, 9e-7, 1.9e-6, 2.3e-6
+    wide: [1e-6, 1.2e-6, 3.2e-6, 3.2e-6],
     // 3.7e-6
     lobe_sum: 4.8e-6,
     // 1.4e-5, 1.4e-5, 1e-6
     grid_sample: [1.8e-5, 1.9e-5, 1.4e-6],
     // 7.5e-5, 7.5e-5, 8.8e-7
     narrow_sample: [9.8e-5, 9.8e-5, 1.2e-6],
-    // 6.5e-7, 7.6e-7, 8.9e-7
-    wide_sample: [8.5e-7, 1e-6, 1.2e-6],
-    // 2.6e-7
-    sample_length: 3.5e-7,
-    // 1.9e-5, 5.5e-7
-    grid_cdf: [2.5e-5, 7.2e-7],
+    // 7.3e-7, 8.2e-7, 1.0e-6
+    wide_sample: [1.1e-6, 1.2e-6, 1.5e-6],
+    // 3.3e-7
+    sample_length: 4.5e-7,
+    // 2.2e-5, 6.0e-7
+    grid_cdf: [3e-5, 9e-7],
     // 1e-4, 6.2e-6
     narrow_cdf: [1.4e-4, 8.1e-6],
-    // 5.5e-7, 1.4e-7
-    wide_cdf: [7.3e-7, 1.9e-7],
-    // 5.9e-7, 6.1e-7, 3.4e-6
-    levels: [7.7e-7, 7.9e-7, 4.4e-6],
+    // 7.4e-7, 1.6e-7
+    wide_cdf: [1.1e-6, 2.5e-7],
+    // 6.8e-7, 6.1e-7, 3.4e-6
+    levels: [1e-6, 1e-6, 4.4e-6],
     // 4.4e-6; 0 where neither fuses
     // 3.0e-6
     albedo: 4e-6,
@@ -85,8 +86,8 @@ pub(crate) const MATCHED: Rows = Rows {
     albedo_mesh: 7e-5,
     // 2.5e-5
     reciprocity: 3.3e-5,
-    // 3.9e-6
-    sample_eval: 5.1e-6,
+    // 6.2e-6
+    sample_eval: 9e-6,
     weight_bound: 0.0,
     // 4.2e-6, 7.4e-5, 7.5e-7
     integral: [5.5e-6, 9.6e-5, 9.8e-7],
@@ -98,6 +99,4 @@ pub(crate) const MATCHED: Rows = Rows {
     off_sphere_sample: [5.9e-5, 3.1e-5, 3.4e-5],
     // .0412, 7.27, 2.27; .0206, 14.0, 3.69; .0059, 55.6, 8.27
     gain: [[0.0413, 7.2, 2.2], [0.0207, 13.9, 3.6], [0.006, 55.0, 8.1]],
-    // 8.34, 4.72, 2.44: those of a hundred thousand heads of hair
-    weight: [9.2, 5.2, 2.7],
 };

@@ -1,4 +1,4 @@
-//! Lower-variance samplers of the published model, which follow its bells and its angular factor W.
+//! Samplers of lower variance for the published model, which follow its bells and its angular factor W.
 
 mod band_cdf;
 mod bands;
@@ -24,54 +24,56 @@ use crate::simd::portable::Unfused;
 use crate::simd::{Broadcast, Lanes, Scalar, Vec3x};
 use crate::{HairParams, LobeMask, PerLobe};
 
-/// The model of [`Published`](crate::Published), with the same parameters, values and albedo, and a sampler that follows them closer
-/// than the published one.
+/// The model of [`Published`](crate::Published), with the same parameters, values and albedo, but with a sampler of lower variance
+/// that follows the values more closely.
 ///
-/// Each lobe is drawn from its own bells, cut to the sphere: truncated Gaussians on the Gaussian model, truncated Cauchys
-/// on the all-Cauchy one, and the glints on the whole circle. The remaining factor of `S cos theta_i` is
-/// `W = (cos theta_i / cos theta_d)^2`, at most 4 and the same for all lobes. It is approximated by a constant in each of `BANDS`
-/// bands of inclination, narrower towards the poles, where W falls to 0. Lobes are chosen by their integrals with that constant.
+/// Each lobe is drawn from its own bells, cut to the sphere: truncated Gaussians on the Gaussian model, truncated Cauchys on the
+/// all-Cauchy model, and the glints on the whole circle. The remaining factor of `S cos theta_i` is
+/// `W = (cos theta_i / cos theta_d)^2`, at most 4 and the same for all lobes. W is approximated by a constant in each of `BANDS`
+/// bands of inclination, which are narrower towards the poles, where W falls to 0. Lobes are chosen by their integrals with these
+/// constants.
 ///
-/// From the poles to the band in the middle these constants ascend. The integral of a lobe's bell, as a function of the integral
-/// of its product with W from the nearer pole (which is drawn uniformly), is then the least of one line per band: inversion needs
+/// From the poles to the band in the middle the constants ascend. The integral of a lobe's bell is then a function of the integral
+/// of its product with W from the nearer pole, which is drawn uniformly: the least of one line per band. Inversion therefore needs
 /// no search.
 ///
 /// With `BY_CHANNEL` lobes are chosen by their shares of red, green and blue, `sqrt(sum_c (E_lc / sum_k E_kc)^2)`, instead of the
-/// mean of the three. This evens out the relative variances of the channels; the default minimises that of their mean. Use it for
-/// saturated colours: V of the blue of red hair falls from .41–.73 to .13–.20, and that of the mean rises from .01–.03 to
-/// .11–.14 (test `by_channel`).
+/// mean of the three channels. This choice evens out the relative variances of the channels, while the default minimises the
+/// variance of their mean. Use it for saturated colours: V of the blue of red hair falls from .41–.73 to .13–.20, and V of the mean
+/// rises from .01–.03 to .11–.14 (test `by_channel`).
 ///
-/// - Density: exact, as reported. With `h` the constant of the band it is `h sum I M N / sum E`, over `cos theta_i`: the model
-///   itself times `h / W`. It jumps where bands meet. The band of a direction follows from its first component alone, so that
-///   every precision agrees.
-/// - Weights: bounded by the sum of the energies times the largest `W / h`, in closed form
-///   (`Reference::weight_bound` of `hairis-reference`); the mean of a weight's RGB is `W / h` times that sum. By channel in place of
-///   the sum: the largest energy over its lobe's probability.
-/// - Accuracy: the density is as exact as S, to 1e-4 relative (Gaussian) and 1e-5 (Cauchy): the bells are in it. What a sample
-///   reports holds for the direction it returns to 6e-5 and 1e-5, to the ends of the uniform numbers, where S is above 1e-20
-///   (test `tails`). For widths of a degree and more, further than 1e-3 rad from the fibre's axis; errors grow as widths
-///   shrink. A Gaussian lobe below `2^-115` of its peak has neither value nor density; nor
-///   is a lobe sampled whose energy is below 1e-36 of the largest.
+/// - Density: exact, as reported. With `h` the constant of the band it is `h sum I M N / sum E`, over `cos theta_i`, which is the
+///   model itself times `h / W`. The density jumps where bands meet. The band of a direction depends on its first component alone,
+///   so that every precision agrees.
+/// - Weights: bounded by the sum of the energies times the largest `W / h`, in closed form (`Reference::weight_bound` of
+///   `hairis-reference`); the mean of a weight's RGB is `W / h` times that sum. By channel, the largest energy over its lobe's
+///   probability replaces the sum.
+/// - Accuracy: the density contains the bells and is as exact as S, to 1e-4 relative (Gaussian) and 1e-5 (Cauchy). The values that a
+///   sample reports hold for the direction it returns to 6e-5 and 1e-5, to the ends of the uniform numbers, where S is above 1e-20
+///   (test `tails`). These bounds are for widths of a degree and more, further than 1e-3 rad from the fibre's axis; errors grow as
+///   widths shrink. A Gaussian lobe below `2^-115` of its peak has neither value nor density, and a lobe whose energy is below 1e-36
+///   of the largest is not sampled.
 /// - Domain: `BANDS` is 5, 9 or 25. By channel, a channel below 1e-18 of the brightest is ignored.
 /// - Source: ours; it replaces section 3.2 of Ou et al. 2012.
 ///
 /// # Gain and cost
 ///
-/// Under constant light, over the 3024 cells of a grid of everyday hair (test `matched::variance`): the mean of V, the relative
-/// variance of one sample; and the gain, V of the published sampler over it, as geometric mean (and least). The largest weight is
-/// a bound relative to the mean, for `beta_r` from 0.5 to 60 degrees and `theta_o` up to 89.9 (test `matched::fireflies`);
-/// weights of narrow hair hardly ever come near it.
+/// The table was measured under constant light, over the 3024 cells of a grid of everyday hair (test `matched::variance`). V is the
+/// relative variance of one sample, as a mean; the gain is V of the published sampler over it, as geometric mean (and least). The
+/// largest weight is the bound over the mean where it is largest (test `matched::fireflies`), in this range: `beta_r` from 0.5 to 60
+/// degrees, `gamma_tt` from 1 to 60, `gamma_g` from 1 to 40, `phi_g` from 10 to 80, `i_g` from 0.1 to 10, `theta_o` up to 89.9, and
+/// intensities of bright hair. It belongs to half a degree, strong glints and a grazing view, where weights hardly ever come near it.
 ///
 /// | sampler | Gaussian: V, gain | all-Cauchy: V, gain | largest weight, Gaussian, all-Cauchy |
 /// |---|---|---|---|
 /// | published | .2469 | .1889 | |
-/// | `Matched<_, 5>` | .0412, 7.3 (2.3) | .0448, 4.4 (2.1) | 8.4, 5.3 |
-/// | `Matched<_, 9>`, the default | .0206, 14 (3.7) | .0223, 8.8 (3.5) | 4.8, 3.4 |
-/// | `Matched<_, 25>` | .0059, 56 (8.3) | .0065, 35 (8.2) | 2.5, 2.5 |
+/// | `Matched<_, 5>` | .0412, 7.3 (2.3) | .0448, 4.4 (2.1) | 13, 6.7 |
+/// | `Matched<_, 9>`, the default | .0206, 14 (3.7) | .0223, 8.8 (3.5) | 7.0, 4.0 |
+/// | `Matched<_, 25>` | .0059, 56 (8.3) | .0065, 35 (8.2) | 3.1, 2.5 |
 ///
-/// Any broad light gains. No sampler of the hair reduces the variance that a small or a textured light adds. In the far tails of
-/// a Gaussian lobe, where such a light may stand, the published sampler puts more samples. Sample those lights, and combine. The
-/// [guide](crate::guide::choosing) has times, and which sampler to use when.
+/// The sampler gains under any broad light. No sampler of the hair reduces the variance that a small or a textured light adds. In
+/// the far tails of a Gaussian lobe, where such a light may stand, the published sampler places more samples. Sample such lights
+/// themselves, and combine the estimates by MIS. The [guide](crate::guide::choosing) has times, and which sampler to use when.
 ///
 /// ```
 /// use glam::Vec3;
@@ -86,8 +88,8 @@ use crate::{HairParams, LobeMask, PerLobe};
 pub struct Matched<B, const BANDS: usize = 9, const BY_CHANNEL: bool = false>(pub B);
 
 impl<B> Matched<B> {
-    /// The matched sampler as it is recommended: nine bands, lobes chosen by their mean over the channels. For others name the
-    /// type: `Matched::<_, 25>(Gaussian)`.
+    /// Makes the recommended matched sampler, with nine bands and with lobes chosen by the mean over the channels. For other
+    /// samplers name the type: `Matched::<_, 25>(Gaussian)`.
     #[inline]
     #[must_use]
     pub const fn new(bell: B) -> Self {
@@ -96,7 +98,7 @@ impl<B> Matched<B> {
 }
 
 impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Matched<B, BANDS, BY_CHANNEL> {
-    /// The constants of a material in any [`Precision`], of a description that is not checked.
+    /// Computes the constants of a material in any [`Precision`], from a description that is not checked.
     #[inline]
     #[must_use]
     pub fn constants<W: Precision>(&self, desc: &HairDesc<W::Lane>) -> MatchedMaterial<W::Lane> {
@@ -225,7 +227,7 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
     }
 }
 
-/// The mixture density times `cos theta_i`.
+/// Computes the mixture density times `cos theta_i`.
 #[inline(always)]
 fn density<L: Lanes, C: Broadcast<L>, const N: usize>(
     prepared: &MatchedPrepared<C, N>,

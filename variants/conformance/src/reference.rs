@@ -1,4 +1,4 @@
-//! The model agrees with its reference in double precision.
+//! Property that the model agrees with its reference in double precision.
 
 use crate::cases::Property;
 use crate::cases::inputs::Inputs;
@@ -14,10 +14,10 @@ use hairis_reference::{Reference, ReferenceSample};
 
 const NAME: &str = "the model agrees with its reference";
 
-/// Packets of eight hits.
+/// Number of packets of eight hits.
 const CASES: usize = 1600;
 
-/// Error of `got`, less what moving the direction by the tolerated rounding changes, over the tolerance.
+/// Returns the error of `got` divided by the tolerance, less the change that moving the direction by the tolerated rounding causes.
 fn excess(
     got: f64,
     at: impl Fn([f64; 3]) -> f64,
@@ -37,12 +37,12 @@ fn excess(
     ((got - want).abs() - by).max(0.0) / (want.abs().max(tolerance.floor) * relative_to)
 }
 
-/// Values, densities, lobes and samples are those of the [`Reference`], where the subject has one: on one lane and on every
-/// level, on its materials and on its random ones.
+/// Checks that values, densities, lobes and samples are those of the [`Reference`], if the subject has one: on one lane and on every
+/// level, on its named materials and on its random ones.
 ///
 /// # Errors
 ///
-/// At the first result that differs.
+/// Returns a failure if a result differs by more than [`Tolerance`] allows.
 pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
     let compared = Cell::new(0_usize);
     let property = Property {
@@ -169,13 +169,14 @@ fn see_eval(
     );
 }
 
-/// How far the numbers of a sample, and with them the shares of its lobes, may be off: a few roundings.
+/// Errors that a few roundings may cause in the numbers of a sample, and thus in the shares of its lobes.
 const NUMBERS: [f64; 11] = [
     -4e-7, -2e-7, -1e-7, -5e-8, -2e-8, 0.0, 2e-8, 5e-8, 1e-7, 2e-7, 4e-7,
 ];
 
-/// The sample has the lobe of the reference's, and its direction to the tolerance and to what rounding the numbers moves it:
-/// it lies between the samples of numbers on both sides. At the boundary of two lobes, and next to the axis, either is right.
+/// Checks that the sample has the lobe of the reference's sample, and its direction to the tolerance and to the change that rounding the
+/// numbers causes: it lies between the samples of numbers on both sides. At the boundary of two lobes, and next to the axis, either
+/// sample is accepted.
 fn compare_sample(
     reference: &dyn Reference<f64>,
     got: Option<Sample>,
@@ -187,7 +188,7 @@ fn compare_sample(
         return Ok(());
     };
     let xi = xi.map(f64::from);
-    // Distance of the sample from one of the reference's, if they are of one lobe.
+    // Distance of the sample from a sample of the reference, if both are of one lobe.
     let distance = |want: &ReferenceSample<f64>| match (want.lobe, got) {
         (None, None) => Some(0.0),
         (None, Some(s)) => (cos_theta(s.wi) < 1e-3).then_some(0.0),
@@ -199,11 +200,7 @@ fn compare_sample(
         return Ok(());
     }
     for axis in 0..3 {
-        let path = NUMBERS.map(|by| {
-            let mut xi = xi;
-            xi[axis] = (xi[axis] + by).clamp(0.0, 1.0 - 1e-9);
-            reference.sample(xi)
-        });
+        let path = path(reference, xi, axis);
         let is_between = |pair: &[ReferenceSample<f64>]| {
             let drawn = pair.iter().all(|want| want.lobe.is_some());
             match (distance(&pair[0]), distance(&pair[1])) {
@@ -225,6 +222,38 @@ fn compare_sample(
             at()
         ),
     ))
+}
+
+/// Returns the samples of one of the numbers and of its neighbours. Between two lobes it also contains the samples on both sides of the
+/// boundary, where azimuths may change fast.
+fn path(reference: &dyn Reference<f64>, xi: [f64; 3], axis: usize) -> Vec<ReferenceSample<f64>> {
+    let sample = |by: f64| {
+        let mut xi = xi;
+        xi[axis] = (xi[axis] + by).clamp(0.0, 1.0 - 1e-9);
+        reference.sample(xi)
+    };
+    let mut path = vec![sample(NUMBERS[0])];
+    for ends in NUMBERS.windows(2) {
+        let ([mut from, mut to], [mut before, mut after]) =
+            ([ends[0], ends[1]], [ends[0], ends[1]].map(sample));
+        let lobes = [before.lobe, after.lobe];
+        let last = sample(to);
+        if lobes[0] != lobes[1] {
+            // Down to the rounding of the number.
+            for _ in 0..40 {
+                let middle = 0.5 * (from + to);
+                let found = sample(middle);
+                if found.lobe == lobes[0] {
+                    (from, before) = (middle, found);
+                } else {
+                    (to, after) = (middle, found);
+                }
+            }
+            path.extend([before, after]);
+        }
+        path.push(last);
+    }
+    path
 }
 
 fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {

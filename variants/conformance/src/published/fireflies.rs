@@ -1,6 +1,8 @@
-//! No fireflies: every weight is below its closed-form bound, and that is a small multiple of the mean over all everyday hair.
+//! Tests that there are no fireflies: every weight is below its closed-form bound, which is a small multiple of the mean over everyday
+//! hair.
 
 use super::Tested;
+use super::handles::Sampling;
 use super::support::{Draws, direction, double, lanes_of, narrow, parameters};
 use crate::comparison::LargestError;
 use core::f64::consts::PI;
@@ -8,13 +10,17 @@ use hairis::params::HairDesc;
 use hairis::{HairParams, Lobe, LobeMask};
 use hairis_reference::{MatchedReference, Reference};
 
-/// Hair with `beta_r` from 0.5 to 60 degrees and all else as wide as it is found, seen from up to 89.9 degrees.
-fn hair(draws: &mut Draws) -> (HairParams, f64) {
-    let degrees = draws.scale(0.5, 60.0);
+/// Largest inclination of `wo`, in degrees.
+const MOST: f64 = 89.9;
+
+/// Makes hair of the range in which the weights are documented. `pick` chooses between two ends: widths in degrees, and the strength of
+/// the glints.
+fn hair(mut pick: impl FnMut(f64, f64) -> f64) -> HairParams {
+    let degrees = pick(0.5, 60.0);
     let beta = [1.0, 0.5, 2.0].map(|k| narrow((k * degrees).to_radians()));
-    let mut angle = |lo: f64, hi: f64| narrow(draws.scale(lo, hi).to_radians());
+    let mut angle = |lo, hi| narrow(pick(lo, hi).to_radians());
     let (gamma_tt, gamma_g, phi_g) = (angle(1.0, 60.0), angle(1.0, 40.0), angle(10.0, 80.0));
-    let i_g = narrow(draws.scale(0.1, 10.0));
+    let i_g = narrow(pick(0.1, 10.0));
     let desc = HairDesc {
         beta,
         gamma_tt,
@@ -23,46 +29,64 @@ fn hair(draws: &mut Draws) -> (HairParams, f64) {
         i_g,
         ..*HairParams::bright().desc()
     };
-    let theta_o = draws.sign() * 89.9_f64.min(draws.between(0.0, 100.0));
-    (HairParams::new(&desc).unwrap(), theta_o.to_radians())
+    HairParams::new(&desc).unwrap()
 }
 
-/// The largest weights over their bound, and the largest bounds over the mean.
-fn scan(tested: &Tested, bands: usize, worst: &mut [LargestError; 2]) {
+/// Returns the sampler at a hit, with its bound on weights over their mean.
+fn bound_over_mean(
+    tested: &Tested,
+    bands: usize,
+    (params, theta_o, phi_o): (&HairParams, f64, f64),
+    mask: LobeMask,
+) -> (Box<dyn Sampling>, f64, f64) {
+    let wo = direction(theta_o.to_radians(), phi_o);
+    let bsdf = tested.sampler(Some(bands)).prepare(params, wo, mask);
+    let desc = parameters(params, 1.0);
+    let reference = MatchedReference::prepare(&desc, tested.formulas.shape, double(wo), bands);
+    let limit = reference.weight_bound(mask).unwrap();
+    let energies = bsdf.albedo();
+    let mean: f64 = energies
+        .0
+        .iter()
+        .flatten()
+        .map(|x| f64::from(*x) / 3.0)
+        .sum();
+    (bsdf, limit, limit / mean)
+}
+
+/// Finds the largest bound over the mean. It lies at a corner of the range: 200,000 random heads of hair, and a search uphill from the
+/// worst of them, found no larger one.
+fn scan_corners(tested: &Tested, bands: usize, worst: &mut LargestError) {
+    for corner in 0..32 {
+        let mut bits = (0..5).map(|k| corner >> k & 1 == 1);
+        let params = hair(|lo, hi| if bits.next().unwrap() { hi } else { lo });
+        for step in 0..=360 {
+            let theta_o = MOST * f64::from(step - 180) / 180.0;
+            let (.., ratio) =
+                bound_over_mean(tested, bands, (&params, theta_o, 0.4), LobeMask::ALL);
+            worst.see(ratio, || format!("{bands} theta_o {theta_o} {params:?}"));
+        }
+    }
+}
+
+/// Finds the largest ratio of a weight to its bound.
+fn scan(tested: &Tested, bands: usize, worst: &mut LargestError) {
     let mut draws = Draws(81);
     for round in 0..16_000 {
-        let (params, theta_o) = hair(&mut draws);
-        let wo = direction(theta_o, draws.between(-PI, PI));
+        let params = hair(|lo, hi| draws.scale(lo, hi));
+        let theta_o = draws.sign() * MOST.min(draws.between(0.0, 100.0));
         let mask = if round % 4 == 0 {
             LobeMask::of(&[Lobe::ALL[draws.below(4)]])
         } else {
             LobeMask::ALL
         };
-        let bsdf = tested.sampler(Some(bands)).prepare(&params, wo, mask);
-        let reference = MatchedReference::prepare(
-            &parameters(&params, 1.0),
-            tested.formulas.shape,
-            double(wo),
-            bands,
-        );
-        let limit = reference.weight_bound(mask).unwrap();
-        if mask == LobeMask::ALL {
-            let mean: f64 = bsdf
-                .albedo()
-                .0
-                .iter()
-                .flatten()
-                .map(|x| f64::from(*x) / 3.0)
-                .sum();
-            worst[1].see(limit / mean, || {
-                format!("{bands} theta_o {theta_o} {params:?}")
-            });
-        }
+        let hit = (&params, theta_o, draws.between(-PI, PI));
+        let (bsdf, limit, _) = bound_over_mean(tested, bands, hit, mask);
         for _ in 0..4 {
             let eight = bsdf.sample8(&lanes_of(&core::array::from_fn(|_| draws.xi3())));
             for s in (0..8).filter_map(|lane| eight.lane(lane)) {
                 let weight = s.weight.iter().map(|x| f64::from(*x) / 3.0).sum::<f64>();
-                worst[0].see(weight / limit, || {
+                worst.see(weight / limit, || {
                     format!("{bands} theta_o {theta_o} {mask:?} {s:?} {params:?}")
                 });
             }
@@ -71,22 +95,23 @@ fn scan(tested: &Tested, bands: usize, worst: &mut [LargestError; 2]) {
 }
 
 pub fn weights_are_below_their_bound_and_close_to_the_mean(tested: &Tested) {
-    let mut worst: [[LargestError; 2]; 3] = Default::default();
-    for (worst, bands) in worst.iter_mut().zip([5, 9, 25]) {
-        scan(tested, bands, worst);
-    }
-    for ((bands, limit), [bound, mean]) in
-        [5, 9, 25].into_iter().zip(tested.rows.weight).zip(&worst)
-    {
-        bound.check(
+    for bands in [5, 9, 25] {
+        let (mut weight, mut over_mean) = (LargestError::default(), LargestError::default());
+        scan(tested, bands, &mut weight);
+        weight.check(
             &format!("{bands} bands: largest weight over its bound"),
             1.0 + 1e-4,
         );
-        mean.check(
+        scan_corners(tested, bands, &mut over_mean);
+        let [.., [stated, unit]] = tested.documented(bands);
+        let largest = over_mean.error;
+        over_mean.check(
             &format!("{bands} bands: bound on weights over the mean"),
-            limit,
+            stated,
         );
-        let [.., [stated, _]] = tested.documented(bands);
-        mean.check(&format!("{bands} bands: that bound, as documented"), stated);
+        assert!(
+            largest > stated - unit,
+            "{bands} bands: {largest} is documented as {stated}"
+        );
     }
 }
