@@ -1,4 +1,4 @@
-//! Checks of the answers: a wrong kernel has no speed.
+//! Checks of the answers of entry points, because the speed of a wrong kernel means nothing.
 
 use crate::Name;
 use crate::resample::{COUNTS, SKY_PDF};
@@ -7,47 +7,48 @@ use glam::Vec3;
 use hairis_reference::{Reference, reference};
 use hairis_variants::{ModelId, Values};
 
-/// Largest error of an answer that counts as correct: relative for value and density, rad for a direction. The reference in
-/// `f32`, which takes part, needs this much. The kernels' own bounds are tighter; their tests check them.
+/// Largest error of an answer that counts as correct: relative for values and densities, in rad for directions. The `f32` reference is
+/// one of the contenders and needs a tolerance this large. The kernels' own bounds are tighter, and the kernels' tests check them.
 const TOLERANCE: f64 = 1e-3;
-/// Values below this count as 0: the kernels' Gaussians end at `2^-115`, those of the `f32` reference at denormals.
+/// Absolute error that is always accepted, so that smaller values count as 0: the kernels' Gaussians end at `2^-115`, those of the
+/// `f32` reference at denormals.
 const NEGLIGIBLE: f64 = 1e-25;
-/// One answer in a hundred may be wrong: samples next to the boundary of two lobes may choose either, and the `f32`
-/// reference loses digits near the axis. A wrong lane is one in eight.
+/// Number of answers of which one may be wrong, because samples next to the boundary of two lobes may choose either, and the `f32`
+/// reference loses digits near the axis. A wrong lane would be one answer in eight.
 const MOST_WRONG: usize = 100;
 
-/// Query for one direction.
+/// Query for one direction: the hair, the view and the arguments of the call.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked {
-    /// The parameters.
+    /// Parameters of the hair.
     pub values: Values,
-    /// Towards the viewer.
+    /// Direction `wo` towards the viewer.
     pub wo: Vec3,
-    /// The query.
+    /// Arguments of the call.
     pub given: Given,
 }
 
-/// Query about a shading point.
+/// Arguments of a query about a shading point, which determine the expected answer.
 #[derive(Clone, Copy, Debug)]
 pub enum Given {
     /// Value and density of this direction.
     Wi(Vec3),
-    /// A direction for these numbers, its value and density.
+    /// Direction sampled with these numbers, with its value and density.
     Xi([f32; 3]),
-    /// Contribution (as value) and weight (as density) of this direction as a candidate under the sky of
+    /// Contribution (as value) and weight (as density) of this direction, taken as a candidate under the sky of
     /// [`resample`](crate::resample).
     Candidate(Vec3),
-    /// Value, density and weight of the direction that a sampler returns for these numbers.
+    /// Contribution (as value) and weight (as density) of the direction that a sampler returns for these numbers.
     Proposal([f32; 3]),
-    /// Contribution of whichever candidate is in the answer.
+    /// Contribution of the candidate that the answer names.
     Kept,
 }
 
-/// Compares a pass with the formulas of the model in `f64`.
+/// Compares the answers of a pass with the formulas of the model in `f64`.
 ///
 /// # Panics
 ///
-/// If more than one answer in a hundred is wrong, or a call has none.
+/// Panics if more than one answer in a hundred is wrong, or if there are fewer answers than calls.
 pub fn check(name: &Name, task: &mut impl Task, model: ModelId, asked: impl Fn(usize) -> Asked) {
     let answers = task.answers();
     assert!(
@@ -84,7 +85,7 @@ fn right(asked: &Asked, model: ModelId, answer: &Answer) -> bool {
     }
 }
 
-/// Contribution and weight of a candidate.
+/// Returns the contribution and the weight of a candidate.
 fn weighed(point: &dyn Reference<f64>, wi: [f64; 3]) -> ([f64; 3], f64) {
     let cosine = wi[1].hypot(wi[2]);
     // The sky of `resample`, in double precision.
@@ -95,15 +96,15 @@ fn weighed(point: &dyn Reference<f64>, wi: [f64; 3]) -> ([f64; 3], f64) {
     (f, f.iter().sum::<f64>() / (3.0 * density))
 }
 
-/// The direction that these numbers come to at a shading point; `None` if the sample is discarded.
+/// Returns the direction that the numbers `xi` yield at a shading point, or `None` if the sample is discarded.
 #[must_use]
 pub fn drawn(point: &dyn Reference<f64>, xi: [f32; 3]) -> Option<[f64; 3]> {
     let sample = point.sample(xi.map(f64::from));
     sample.lobe.map(|_| sample.wi)
 }
 
-/// Whether an answer is correct for the direction that was given, or that a sample must come to; `None` if the sample must be
-/// discarded. The value has a factor on each channel.
+/// Returns true if an answer is correct for the direction `truth`, which is given or which a sample must have. With `None` the sample
+/// must be discarded. The expected value is multiplied by `factors`, channel by channel.
 #[must_use]
 pub fn is_right(
     point: &dyn Reference<f64>,
@@ -120,7 +121,7 @@ pub fn is_right(
     })
 }
 
-/// Whether an answer has the right direction, and what `expected` gives there.
+/// Returns true if an answer has the right direction, and the value and density that `expected` returns for that direction.
 fn agrees(
     truth: Option<[f64; 3]>,
     answer: &Answer,
@@ -148,7 +149,7 @@ fn agrees(
         })
 }
 
-/// The components in double precision.
+/// Returns the components of `v` in double precision.
 pub(crate) fn to_f64(v: Vec3) -> [f64; 3] {
     v.to_array().map(f64::from)
 }

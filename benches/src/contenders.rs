@@ -1,4 +1,4 @@
-//! Contenders of `hairis compare`: the formulas in scalar code, and the kernel on one lane, on eight and in slices.
+//! Contenders of `hairis compare`: the formulas in scalar code, and the kernel on one lane, on eight lanes and in slices.
 
 mod inputs;
 mod points;
@@ -21,36 +21,36 @@ use hairis_reference::{Formulas, Reference, Visitor, reference, visit};
 use hairis_variants::{ModelId, Parameters};
 use serde::Serialize;
 
-/// Timed operation.
+/// Operation that `hairis compare` times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TimedOp {
-    /// Everything constant for one shading point (section 3.3 of the paper).
+    /// Computes everything that is constant for one shading point (section 3.3 of the paper).
     Prepare,
-    /// Value and density of a direction, the shading point prepared beforehand.
+    /// Value and density of a direction at a shading point that was prepared beforehand.
     EvalPdf,
-    /// A direction with its value, density and weight, the shading point prepared beforehand.
+    /// Direction sampled with its value, density and weight, at a shading point that was prepared beforehand.
     Sample,
-    /// [`EvalPdf`](Self::EvalPdf) of hair so narrow that the directions lie in the far tails of every lobe.
+    /// [`EvalPdf`](Self::EvalPdf) on hair with lobes so narrow that the directions lie in the far tails of every lobe.
     EvalPdfTails,
-    /// [`Sample`](Self::Sample) of the same hair.
+    /// [`Sample`](Self::Sample) on the narrow hair of [`EvalPdfTails`](Self::EvalPdfTails).
     SampleTails,
-    /// A shading point of its own for each direction, and its value and density: all on one head of hair.
+    /// Prepares a shading point for each direction, and evaluates its value and density: all on one head of hair.
     PointsEval,
-    /// Preparing one material's shading points, and one sample with its value at each.
+    /// Prepares shading points on one material, and draws one sample with its value at each.
     PointsShared,
-    /// Preparing shading points, and four samples at each.
+    /// Prepares shading points on one material, and draws four samples at each.
     PointsOf4,
-    /// With sixteen.
+    /// Prepares shading points on one material, and draws sixteen samples at each.
     PointsOf16,
-    /// With one, on eight heads of hair, one per lane, packed once.
+    /// Prepares shading points on eight heads of hair, one per lane, packed once, and draws one sample at each.
     PointsMixed,
-    /// Eight materials packed anew for each eight shading points.
+    /// [`PointsMixed`](Self::PointsMixed), with the eight materials packed anew for each eight shading points.
     PointsPacked,
 }
 
 impl TimedOp {
-    /// Every operation, in the order of the tables.
+    /// Operations in the order in which the tables list them.
     pub const ALL: [Self; 11] = [
         Self::Prepare,
         Self::EvalPdf,
@@ -65,7 +65,7 @@ impl TimedOp {
         Self::PointsPacked,
     ];
 
-    /// Name of the operation in tables.
+    /// Returns the name of the operation in tables.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
@@ -84,77 +84,77 @@ impl TimedOp {
     }
 }
 
-/// The kernel, one direction per call.
+/// Name of the kernel called with one direction.
 const ONE: &str = "one lane";
-/// The kernel, eight directions per call.
+/// Name of the kernel called with eight directions.
 const EIGHT: &str = "eight lanes";
 
-/// The kernel, eight directions at one shading point per call, where [`EIGHT`] has eight shading points.
+/// Name of the kernel called with eight directions at one shading point, where [`EIGHT`] has eight shading points.
 const EIGHT_AT_ONE: &str = "eight lanes, one point";
 
-/// [`EIGHT`], with numbers that are put into a packet just before the call, as hosts do that compute them one by one.
+/// Name of [`EIGHT`] with numbers that are packed just before the call, as in hosts that compute them one by one.
 const FRESH: &str = "eight lanes, just written";
-/// The kernel, all directions in one call.
+/// Name of the kernel called once with slices of all directions.
 const SLICES: &str = "slices";
-/// The kernel, eight directions in one call.
+/// Name of the kernel called with slices of eight directions.
 const SHORT: &str = "slices of 8";
-/// The kernel, all directions in one call, each at a shading point of its own.
+/// Name of the kernel called once with all directions, each at a shading point of its own.
 const HITS: &str = "slices of hits";
-/// [`HITS`] with [`Conserving`](hairis::Conserving), as hosts are told to make their materials.
+/// Name of [`HITS`] with [`Conserving`](hairis::Conserving), which hosts are advised to use for their materials.
 const CONSERVING_HITS: &str = "slices of hits, Conserving";
-/// Directions of [`SHORT`].
+/// Number of directions in a call of [`SHORT`].
 const FEW: usize = 8;
 
-/// Code that takes part in an operation.
+/// Implementation of an operation that takes part in the comparison.
 #[derive(Debug)]
 pub struct Contender {
-    /// [`REFERENCE`], or one of the kinds of calls of the kernel.
+    /// Name of the implementation: [`REFERENCE`], or one of the ways of calling the kernel.
     pub name: &'static str,
     /// Instruction set of its lanes.
     pub level: &'static str,
-    /// Whether its answers have each channel divided by its albedo where that is above 1.
+    /// Whether the answers have each channel divided by its albedo where the albedo is above 1.
     pub conserves: bool,
-    /// Pass over all inputs.
+    /// Pass over all inputs, which is what is timed.
     pub task: Box<dyn Pass>,
 }
 
-/// One operation of one model.
+/// Operation of one model, with all contenders and the correct answers.
 #[derive(Debug)]
 pub struct Contest {
-    /// The operation.
+    /// Operation that is timed.
     pub op: TimedOp,
     /// Name of the model.
     pub model: &'static str,
-    /// The formulas in `f32` on the libm crate and on std first, then the kernel.
+    /// Contenders: first the formulas in `f32` with the libm crate and with std, then the kernel.
     pub contenders: Vec<Contender>,
-    /// The answers.
+    /// Correct answers.
     pub truth: Truth,
 }
 
-/// Returns every timed operation of a model; none unless [`ModelId::is_default`].
+/// Returns every timed operation of a model, or an empty list unless the model is the [default](ModelId::is_default) of its name.
 ///
 /// # Errors
 ///
-/// If the model refuses the parameters.
+/// Returns an error if the model rejects the parameters.
 ///
 /// # Panics
 ///
-/// If there are not [`TIMED_DIRECTIONS`] of each input.
+/// Panics if any of the inputs does not have [`TIMED_DIRECTIONS`] elements.
 pub fn contests(model: ModelId, inputs: &TimedInputs) -> Result<Vec<Contest>, ParamError> {
     visit(model, OfModel(inputs))
 }
 
-/// The contenders of an operation, and the answers.
+/// Contenders of an operation with the correct answers, or the error of rejected parameters.
 type Entrants = Result<(Contenders, Truth), ParamError>;
 
-/// The operations of one model.
+/// Visitor that builds the operations of one model.
 struct OfModel<'a>(&'a TimedInputs);
 
 impl Visitor for OfModel<'_> {
     type Output = Result<Vec<Contest>, ParamError>;
 
     fn visit<M: Formulas>(self) -> Self::Output {
-        // At compile time: models that are not timed are not compiled.
+        // Decided at compile time, so that models that are not timed are not compiled.
         if const { !ModelId::of::<M>().is_default() } {
             return Ok(Vec::new());
         }
@@ -184,7 +184,7 @@ impl Visitor for OfModel<'_> {
     }
 }
 
-/// The formulas in `f64` for these parameters, seen from each of `wo`.
+/// Returns the formulas in `f64` for these parameters, seen from each of `wo`.
 fn truth<M: Formulas>(
     params: &M::Params,
     wo: &[Vec3],
@@ -194,11 +194,11 @@ fn truth<M: Formulas>(
         .collect()
 }
 
-/// The contenders so far.
+/// List of contenders that is being built.
 struct Contenders(Vec<Contender>);
 
 impl Contenders {
-    /// The formulas in `f32` on the libm crate and on std, and the kernel on one lane.
+    /// Begins the list with the formulas in `f32`, with the libm crate and with std, and with the kernel on one lane.
     fn new(libm: Box<dyn Pass>, std: Box<dyn Pass>, one: Box<dyn Pass>) -> Self {
         let [libm, std] =
             [("scalar, libm crate", libm), ("scalar, std", std)].map(|(level, task)| Contender {
@@ -219,7 +219,7 @@ impl Contenders {
         ])
     }
 
-    /// Then one on every level of this CPU.
+    /// Adds one contender for every level of this CPU.
     fn levels(mut self, name: &'static str, task: impl Fn(Level) -> Box<dyn Pass>) -> Self {
         self.0.extend(Level::available().map(|level| Contender {
             name,
@@ -231,7 +231,7 @@ impl Contenders {
     }
 }
 
-/// A material: the kernel's, and the formulas on the libm crate and on std.
+/// Material in three implementations: the kernel, and the formulas with the libm crate and with std.
 struct Implementations<M: Formulas> {
     material: Material<M>,
     libm: M::Constants<f32>,
@@ -247,7 +247,7 @@ impl<M: Formulas> Implementations<M> {
         }
     }
 
-    /// The formulas seen from `wo`.
+    /// Returns the formulas seen from `wo`, with the libm crate and with std.
     fn references(&self, wo: Vec3) -> (M::Point<f32>, M::Point<Platform>) {
         let wo = wo.to_array();
         (

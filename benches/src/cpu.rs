@@ -1,8 +1,8 @@
-//! The machine that measures.
+//! Identity of the CPU on which benches are measured.
 
 use std::{env, fs};
 
-/// Name of the CPU with its numbers: names alone are often meaningless on rented machines.
+/// Returns the name of the CPU with its family, model and stepping, because names alone are often meaningless on rented machines.
 #[must_use]
 pub fn name() -> String {
     let Ok(info) = fs::read_to_string("/proc/cpuinfo") else {

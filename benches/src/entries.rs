@@ -1,4 +1,4 @@
-//! The entry points.
+//! Entry points of the models, as they are measured by the benches and by the program `entry`.
 
 mod hits;
 mod models;
@@ -19,25 +19,25 @@ use hairis::{Bsdf, Bsdf8, Material, Material8};
 use hairis_reference::{Formulas, Reference};
 use hairis_variants::{ModelId, Parameters};
 
-/// Operation of an entry point.
+/// Operation that an entry point performs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Op {
-    /// Everything constant for one shading point.
+    /// Computes everything that is constant for one shading point.
     Prepare,
     /// Value and density of a direction.
     Eval,
-    /// A direction, its value, density and weight.
+    /// Sampled direction with its value, density and weight.
     Sample,
-    /// A shading point, and so many samples of it.
+    /// Shading point with this number of samples.
     Path(usize),
-    /// Candidates for rays: directions, weights and the choice.
+    /// Candidates for rays: their directions, their weights and the choice among them.
     Resample,
-    /// Hits in one call each, or a column of them, on a material that conserves energy.
+    /// Hits with one call each, or columns of hits, on a material that conserves energy.
     Hits,
 }
 
 impl Op {
-    /// All of them: a path takes 1, 4 or 16 samples per shading point.
+    /// Operations in the order of the benches; a path takes 1, 4 or 16 samples per shading point.
     pub const ALL: [Self; 8] = [
         Self::Prepare,
         Self::Eval,
@@ -66,18 +66,18 @@ impl fmt::Display for Op {
 /// Identity of an entry point: function, model and instruction set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Name {
-    /// Its operation.
+    /// Operation that the entry point performs.
     pub op: Op,
-    /// The entry point: a function of `hairis`, with a suffix if it is measured in several ways.
+    /// Function of `hairis` that is called, with a suffix if it is measured in several ways.
     pub entry: &'static str,
-    /// One of [`MODELS`].
+    /// Name of the model, as in [`MODELS`].
     pub model: &'static str,
-    /// `scalar`, `portable`, or the name of the level.
+    /// Instruction set: `scalar`, `portable`, or the name of the level.
     pub level: &'static str,
 }
 
 impl fmt::Display for Name {
-    /// Path of the bench: `eval/eval_pdf8/gaussian/avx2+fma`.
+    /// Writes the path of the bench: `eval/eval_pdf8/gaussian/avx2+fma`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             op,
@@ -89,20 +89,20 @@ impl fmt::Display for Name {
     }
 }
 
-/// Measurement of entry points.
+/// Measurement that is applied to the selected entry points.
 pub trait Visitor {
-    /// Whether an entry point is to be measured at all.
+    /// Returns true if an entry point is to be measured at all.
     fn wants(&self, name: &Name) -> bool;
-    /// Measures it.
+    /// Measures an entry point.
     fn visit<T: Task>(&mut self, name: &Name, task: T);
 }
 
 /// Name of the scalar baseline, the paper's formulas in `f32`.
 pub const REFERENCE: &str = "reference";
-/// Directions in a short slice: less than a packet.
+/// Number of directions in a short slice: less than a packet.
 const SHORT: usize = 5;
 
-/// Short name of a level, the same on every machine and in every build.
+/// Returns the short name of a level, which is the same on every machine and in every build.
 #[must_use]
 pub fn label(level: Level) -> &'static str {
     if level == Level::portable() {
@@ -112,12 +112,12 @@ pub fn label(level: Level) -> &'static str {
     }
 }
 
-/// Passes an operation's entry points of all [`MODELS`] that are compiled to `visitor`; the reference comes first. Answers are
-/// checked before.
+/// Passes the entry points of an operation to `visitor`, for all [`MODELS`] that are compiled. The reference comes first. The answers
+/// of an entry point are checked before `visitor` measures it.
 ///
 /// # Panics
 ///
-/// If an entry point that the visitor selects gives wrong answers.
+/// Panics if an entry point that the visitor selects returns wrong answers.
 pub fn visit(op: Op, visitor: &mut impl Visitor) {
     let inputs = &Inputs::draw();
     for (name, id) in MODELS.iter() {
@@ -131,7 +131,7 @@ pub fn visit(op: Op, visitor: &mut impl Visitor) {
     }
 }
 
-/// Passes the entry points of one operation of a model.
+/// Visitor that passes on the entry points of one operation of a model.
 struct OfModel<'a, V> {
     op: Op,
     name: &'static str,
@@ -163,7 +163,7 @@ impl<V: Visitor> hairis_reference::Visitor for OfModel<'_, V> {
     }
 }
 
-/// The entry points of one operation of one model.
+/// Entry points of one operation of one model.
 struct Of<'a, M> {
     op: Op,
     id: ModelId,
@@ -184,7 +184,7 @@ impl<M: Formulas> Of<'_, M> {
         }
     }
 
-    /// Passes one entry point, if it is selected and its answers are correct. All samplers share the published one's baseline.
+    /// Passes on one entry point if it is selected and its answers are correct. All samplers share the published sampler's baseline.
     fn show<T: Task>(
         &self,
         visitor: &mut impl Visitor,
@@ -207,7 +207,7 @@ impl<M: Formulas> Of<'_, M> {
         }
     }
 
-    /// The formulas for the default parameters, seen from `wo`.
+    /// Returns the formulas for the default parameters, seen from `wo`.
     fn reference(wo: [f32; 3]) -> M::Point<f32> {
         M::point(&M::formulas(&M::Params::PRESETS[0].1), wo, 0.0)
     }
@@ -220,19 +220,19 @@ impl<M: Formulas> Of<'_, M> {
         Material8::pack(materials::<M>().each_ref())
     }
 
-    /// The one shading point of evaluations and samples.
+    /// Returns the shading point that all evaluations and samples share.
     fn bsdf(&self) -> Bsdf<M> {
         self.material().prepare(self.inputs.wo[0])
     }
 
-    /// Eight shading points on eight heads of hair.
+    /// Returns eight shading points on eight heads of hair.
     fn bsdf8(&self, level: Level) -> Bsdf8<M> {
         self.mixed()
             .with_level(level)
             .prepare8(&packets(&self.inputs.wo[..8])[0])
     }
 
-    /// The query at [`bsdf`](Self::bsdf).
+    /// Returns the query at the shading point of [`bsdf`](Self::bsdf).
     fn at_one(&self, given: Given) -> Asked {
         Asked {
             values: M::Params::PRESETS[0].1.values(),
@@ -241,7 +241,7 @@ impl<M: Formulas> Of<'_, M> {
         }
     }
 
-    /// The query at a lane of [`bsdf8`](Self::bsdf8).
+    /// Returns the query at lane `i % 8` of [`bsdf8`](Self::bsdf8).
     fn at_lane(&self, i: usize, given: Given) -> Asked {
         Asked {
             values: params::<M>()[i % 8].values(),
@@ -250,7 +250,7 @@ impl<M: Formulas> Of<'_, M> {
         }
     }
 
-    /// The query at a shading point of its own, on one material.
+    /// Returns the query at the `i`th shading point on one material.
     fn shared(&self, i: usize, given: Given) -> Asked {
         Asked {
             values: M::Params::PRESETS[0].1.values(),
@@ -259,7 +259,7 @@ impl<M: Formulas> Of<'_, M> {
         }
     }
 
-    /// Calls on eight heads of hair at once.
+    /// Returns the query at the `i`th shading point, on the material of lane `i % 8`.
     fn mixed_hair(&self, i: usize, given: Given) -> Asked {
         Asked {
             values: params::<M>()[i % 8].values(),
@@ -420,10 +420,10 @@ impl<M: Formulas> Of<'_, M> {
         }
     }
 
-    /// A shading point and `samples` samples of it: the answers checked are those of the last call.
+    /// Passes on the entry points that prepare a shading point and draw `samples` samples. The answers of the last call are checked.
     fn path(&self, visitor: &mut impl Visitor, samples: usize) {
         let inputs = self.inputs;
-        // The numbers of a path are the first that were drawn, whatever the shading point.
+        // Every path uses the first numbers that were drawn, whatever its shading point.
         let (xi, eights) = (&inputs.xi[..samples], xi_packets(&inputs.xi));
         let packets_at_one = samples.div_ceil(8);
         let scalar = |i| self.shared(i, Given::Xi(xi[samples - 1]));
@@ -449,7 +449,7 @@ impl<M: Formulas> Of<'_, M> {
             })
         });
         for level in Level::available() {
-            // Eight directions at one shading point; of the last packet only the requested lanes count.
+            // Eight directions at one shading point; in the last packet only the requested lanes count.
             self.show(visitor, "prepare-sample8", label(level), one, || {
                 let material = self.material().with_level(level);
                 let xi = eights[..packets_at_one].to_vec();
@@ -470,7 +470,7 @@ impl<M: Formulas> Of<'_, M> {
     }
 }
 
-/// The results of the last call; those of the others are left in memory and dropped.
+/// Returns the result of the last call; the results of earlier calls are written to memory and dropped.
 #[inline(always)]
 fn last<X, O>(inputs: &[X], call: impl Fn(&X) -> O) -> O {
     let [before @ .., input] = inputs else {

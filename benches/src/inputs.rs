@@ -9,22 +9,22 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use wide::f32x8;
 
-/// Directions in one pass, in packets of eight: their inputs and outputs stay in the first two levels of cache.
+/// Number of directions in one pass, in packets of eight: their inputs and outputs stay in the first two levels of cache.
 pub const DIRECTIONS: usize = 1024;
 
-/// Directions and numbers, all lanes different.
+/// Directions and uniform numbers of one pass, with all lanes different.
 #[derive(Clone, Debug)]
 pub struct Inputs {
-    /// Directions uniform over the sphere: towards the light.
+    /// Directions towards the light, uniform over the sphere.
     pub wi: Vec<Vec3>,
-    /// Directions towards the viewer.
+    /// Directions towards the viewer, uniform over the sphere.
     pub wo: Vec<Vec3>,
-    /// Uniform numbers.
+    /// Triples of uniform random numbers.
     pub xi: Vec<[f32; 3]>,
 }
 
 impl Inputs {
-    /// The inputs of every bench.
+    /// Draws the inputs that every bench uses, from a fixed seed.
     #[must_use]
     pub fn draw() -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(0x6861_6972);
@@ -48,24 +48,24 @@ impl Inputs {
 
 fn on_sphere(height: f32, turn: f32) -> Vec3 {
     let u = 2.0 * height - 1.0;
-    // From the crate, not from the system: the same bits everywhere.
+    // Functions of the libm crate, not of the system, so that the bits are the same everywhere.
     let (sin, cos) = libm::sincosf(turn * TAU);
     let plane = libm::sqrtf(1.0 - u * u);
     Vec3::new(u, plane * cos, plane * sin)
 }
 
-/// The directions as the formulas take them.
+/// Converts directions to the arrays that the formulas take.
 #[must_use]
 pub fn arrays(v: &[Vec3]) -> Vec<[f32; 3]> {
     v.iter().map(|v| v.to_array()).collect()
 }
 
-/// The elements of two lists, paired.
+/// Pairs the elements of two lists.
 pub(crate) fn pairs<A: Clone, B: Clone>(a: &[A], b: &[B]) -> Vec<(A, B)> {
     a.iter().cloned().zip(b.iter().cloned()).collect()
 }
 
-/// Rows of both.
+/// Joins the triples of two lists into rows of six numbers.
 pub(crate) fn joined(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 6]> {
     a.iter()
         .zip(b)
@@ -73,14 +73,14 @@ pub(crate) fn joined(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 6]> {
         .collect()
 }
 
-/// Eight directions per packet.
+/// Packs directions, eight per packet; a remainder of fewer than eight is dropped.
 #[must_use]
 pub fn packets(v: &[Vec3]) -> Vec<Vec3x8> {
     let (eights, _) = v.as_chunks::<8>();
     eights.iter().map(|eight| (*eight).into()).collect()
 }
 
-/// Eight triples of numbers per packet.
+/// Packs triples of numbers, eight per packet; a remainder of fewer than eight is dropped.
 #[must_use]
 pub fn xi_packets(xi: &[[f32; 3]]) -> Vec<[f32x8; 3]> {
     let (eights, _) = xi.as_chunks::<8>();
@@ -90,42 +90,38 @@ pub fn xi_packets(xi: &[[f32; 3]]) -> Vec<[f32x8; 3]> {
         .collect()
 }
 
-/// Parameters of the eight lanes: the presets in turn.
+/// Returns the parameters of the eight lanes, which are the presets of the model in turn.
 #[must_use]
 pub fn params<M: Registered>() -> [M::Params; 8] {
     let presets = M::Params::PRESETS;
     from_fn(|lane| presets[lane % presets.len()].1)
 }
 
-/// The materials of [`params`].
+/// Returns the materials of the eight lanes, made from [`params`].
 #[must_use]
 pub fn materials<M: Registered>() -> [Material<M>; 8] {
     params::<M>().map(|params| Material::new(&M::MODEL, &params))
 }
 
-/// A column of [`DIRECTIONS`] numbers for slices, at an address chosen by its number.
+/// Column of [`DIRECTIONS`] numbers for slices, at an address that depends on the column's index.
 ///
-/// Columns a multiple of 4096 bytes apart, as those of 1024 floats allocated together, delay each other: a load waits for
-/// an earlier store to an address equal to its own modulo 4096, even in another column. That made an evaluation 40% slower
-/// here. It is a pitfall for hosts and no property of the kernel: columns of the benches begin 256 bytes apart modulo
-/// 4096, which works for sixteen of them, each on a cache line.
+/// Columns a multiple of 4096 bytes apart, such as columns of 1024 floats allocated together, delay each other. A load waits for an
+/// earlier store to an address that is equal modulo 4096, even in another column. Such columns made an evaluation 40% slower here. This
+/// is a pitfall for hosts and not a property of the kernel, so the columns of the benches begin 256 bytes apart modulo 4096. Sixteen
+/// columns fit in this way, each on a cache line.
 #[derive(Clone, Debug)]
 pub struct Column {
     numbers: Vec<f32>,
     start: usize,
 }
 
-/// Numbers in 4096 bytes.
+/// Number of `f32` values in 4096 bytes.
 const PAGE: usize = 1024;
-/// Numbers between two columns, modulo [`PAGE`].
+/// Distance between the starts of two columns, in numbers, modulo [`PAGE`].
 const STAGGER: usize = 64;
 
 impl Column {
-    /// Column `index` of a call, filled with `numbers`.
-    ///
-    /// # Panics
-    ///
-    /// If there are more than [`DIRECTIONS`] of them.
+    /// Makes the column with number `index` of a call, and fills it with the first [`DIRECTIONS`] of `numbers`.
     #[must_use]
     pub fn new(index: usize, numbers: impl IntoIterator<Item = f32>) -> Self {
         let mut column = vec![0.0; 2 * PAGE + DIRECTIONS];
@@ -139,14 +135,14 @@ impl Column {
         }
     }
 
-    /// Part of the column.
+    /// Returns the `len` numbers of the column that begin at `at`.
     #[inline(always)]
     #[must_use]
     pub fn part(&self, at: usize, len: usize) -> &[f32] {
         &self.numbers[self.start + at..][..len]
     }
 
-    /// Part of the column, to write to.
+    /// Returns the `len` numbers of the column that begin at `at`, to write to.
     #[inline(always)]
     #[must_use]
     pub fn part_mut(&mut self, at: usize, len: usize) -> &mut [f32] {

@@ -1,8 +1,8 @@
 //! Entry points of the models on fixed inputs, with the expected answers.
 //!
-//! [`entries::visit`] passes every entry point on every level to a [`Visitor`]: the Criterion benches time them, the
-//! program `entry` runs one of them for callgrind and for timing by hand. The module `contenders` (feature
-//! `contenders`) has the calls that `hairis compare` times, on inputs that it draws.
+//! [`entries::visit`] passes every entry point on every level to a [`Visitor`]: the Criterion benches time all of them, and the program
+//! `entry` runs one of them for callgrind and for timing by hand. The module `contenders` (feature `contenders`) contains the calls
+//! that `hairis compare` times, on inputs that `hairis compare` draws.
 
 pub mod check;
 #[cfg(feature = "contenders")]

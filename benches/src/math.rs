@@ -1,20 +1,20 @@
-//! The elementary functions on every level, as kernels and as rows of columns.
+//! Elementary functions on every level, as kernels on eight lanes and as rows of columns.
 
 use core::fmt::Debug;
 use hairis::model::math;
 use hairis::simd::{Broadcast, Kernel, Lanes, Row, f32x8};
 
-/// A function of two numbers with two results, on the kernel's lanes and on `libm`.
+/// Function of two numbers with two results, on the kernel's lanes, with `libm` and in double precision.
 pub trait Function: Copy + Default + Debug {
-    /// Its name in [`hairis::model::math`].
+    /// Name of the function in [`hairis::model::math`].
     const NAME: &'static str;
-    /// The ranges of its arguments.
+    /// Ranges of both arguments.
     const RANGE: [[f32; 2]; 2];
-    /// The function.
+    /// Evaluates the function on the kernel's lanes.
     fn lanes<L: Lanes>(x: L, y: L) -> [L; 2];
-    /// Function on `libm`.
+    /// Evaluates the function with `libm`.
     fn libm(x: f32, y: f32) -> [f32; 2];
-    /// Function in `f64`.
+    /// Evaluates the function in `f64`.
     fn truth(x: f64, y: f64) -> [f64; 2];
 }
 
@@ -63,12 +63,12 @@ functions! {
     libm::sincosf(x).into(); x.sin_cos().into();
 }
 
-/// A function on eight pairs of arguments.
+/// Kernel that evaluates a function on eight pairs of arguments.
 #[derive(Clone, Copy, Debug)]
 pub struct Eight<'a, F: Function> {
-    /// First and second argument.
+    /// First and second arguments.
     pub arguments: &'a [f32x8; 2],
-    /// The function.
+    /// Function to evaluate.
     pub function: F,
 }
 
@@ -83,7 +83,7 @@ impl<F: Function> Kernel for Eight<'_, F> {
     }
 }
 
-/// A function over columns of first and second arguments; the third is passed through.
+/// Row that evaluates a function over columns of first and second arguments, and passes the third column through.
 #[derive(Clone, Copy, Debug)]
 pub struct Columns<F: Function>(pub F);
 

@@ -3,12 +3,12 @@
 use core::ops::{Add, Div, Mul, Neg, Sub};
 use hairis_reference::Real;
 
-/// An `f32` whose elementary functions are those of std, which are the C library's: glibc's take two thirds of the time of
-/// the libm crate's. Of functions that std lacks it has the libm crate's.
+/// Wrapper of `f32` whose elementary functions are those of std, that is of the C library: glibc's take two thirds of the time of those
+/// of the libm crate. Functions that std lacks are taken from the libm crate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct Platform(pub f32);
 
-/// Numbers as the formulas take them.
+/// Wraps the three numbers for formulas that use the platform's functions.
 #[must_use]
 pub fn platform(numbers: [f32; 3]) -> [Platform; 3] {
     numbers.map(Platform)
@@ -40,7 +40,7 @@ impl Neg for Platform {
     }
 }
 
-/// Functions of one number, by the methods of std.
+/// Implements functions of one number by the methods of std.
 macro_rules! functions {
     ($($function:ident $method:ident;)*) => { $(
         #[inline(always)]
@@ -93,7 +93,7 @@ impl Real for Platform {
     fn ln_gamma(self) -> Self {
         Self(libm::lgammaf(self.0))
     }
-    // No denormals: products with them are slow.
+    // Flushes results that would be denormal to 0, because products with denormals are slow.
     #[inline(always)]
     fn exp(self) -> Self {
         Self(if self.0 < -87.3 { 0.0 } else { self.0.exp() })

@@ -1,4 +1,4 @@
-//! Candidates for rays under a sky: the pool of one hit and the reservoirs of eight, from uniform numbers to chosen rays.
+//! Candidates for rays under a sky: the pool of one hit and the reservoirs of eight hits, from uniform numbers to chosen rays.
 
 use crate::inputs::{Column, DIRECTIONS, Inputs, packets, xi_packets};
 use crate::task::{Answer, Output, Task};
@@ -13,37 +13,38 @@ use hairis::resample::{
 use hairis::simd::f32x8;
 use hairis::{Bsdf, Bsdf8, Vec3x8};
 
-/// Candidates of each technique in a pool.
+/// Number of candidates of each technique in a pool.
 const EACH: usize = 32;
-/// Rays chosen from a pool.
+/// Number of rays chosen from a pool.
 const RAYS: u32 = 16;
-/// Candidates of both techniques.
+/// Number of candidates of both techniques in a pool.
 const ALL: usize = 2 * EACH;
-/// Packets of each technique's candidates for eight hits.
+/// Number of packets of candidates of each technique, for eight hits.
 const PACKETS: usize = 4;
 
-/// Numbers of candidates by which every weight counts.
+/// Numbers of candidates of each technique, which enter every weight.
 pub const COUNTS: Counts = Counts {
     bsdf: 32,
     light: 32,
 };
 
-/// The sky's density of every direction, per steradian: it is drawn uniformly.
+/// Density of every direction of the sky, per steradian; candidates are drawn from it uniformly.
 pub const SKY_PDF: f32 = 0.079_577_47;
 
-/// Radiance of the sky, each channel by one of the coordinates. It stands for a look-up and takes next to no time.
+/// Returns the radiance of the sky in the channel that belongs to the coordinate `x`. It stands for a look-up and takes next to no
+/// time.
 #[inline(always)]
 fn sky_along(x: f32) -> f32 {
     1.0 + 0.5 * x
 }
 
-/// Radiance of the sky in eight directions.
+/// Returns the radiance of the sky in eight directions, one per lane.
 #[must_use]
 pub fn sky8(wi: &Vec3x8) -> [f32x8; 3] {
     [wi.x, wi.y, wi.z].map(|x| f32x8::splat(1.0) + f32x8::splat(0.5) * x)
 }
 
-/// Direction, radiance and density of candidates that were drawn from the sky: the columns to weigh.
+/// Returns one row per direction drawn from the sky, with its direction, radiance and density: the columns to weigh.
 #[must_use]
 pub fn looked_up(wi: &[Vec3]) -> Vec<[f32; 7]> {
     let row = |wi: &Vec3| {
@@ -53,18 +54,18 @@ pub fn looked_up(wi: &[Vec3]) -> Vec<[f32; 7]> {
     wi.iter().map(row).collect()
 }
 
-/// The pool of one hit: proposes 32 directions, looks them up, adds 32 of the light that were drawn beforehand, weighs all and
-/// chooses 16 rays. The directions of a call are its candidates.
+/// Pool of one hit. A call proposes 32 directions, looks up their radiance, adds 32 directions of the light that were drawn beforehand,
+/// weighs all candidates and chooses 16 rays. The directions of a call are its candidates.
 #[derive(Debug)]
 pub struct PoolTask<M: Model> {
     bsdf: Bsdf<M>,
     xi: [Column; 3],
-    /// Candidates of the light.
+    /// Candidates of the light, drawn beforehand.
     block: [Column; 7],
     pool: Columns,
 }
 
-/// Direction, radiance, density, contribution and weight of the candidates, those of the BSDF first.
+/// Columns of the candidates: direction, radiance, density, contribution and weight. Candidates of the BSDF come first.
 #[derive(Debug)]
 struct Columns {
     wi: [[f32; ALL]; 3],
@@ -75,7 +76,7 @@ struct Columns {
 }
 
 impl<M: Model> PoolTask<M> {
-    /// Pools at this hit, with the numbers and the directions of `inputs`.
+    /// Makes the pools at the hit of `bsdf`, from the numbers and the directions of `inputs`.
     #[must_use]
     pub fn new(bsdf: Bsdf<M>, inputs: &Inputs) -> Self {
         let block = looked_up(&inputs.wi);
@@ -145,7 +146,7 @@ impl<M: Model> Task for PoolTask<M> {
     }
     #[inline(always)]
     fn call(&mut self, index: usize) {
-        // All columns are of one length; if they were not, the answers would be found wrong.
+        // All columns have the same length; if they had not, the check of the answers would fail.
         let done = self.fill(index);
         let contribution = self.pool.contribution.each_ref().map(|column| &column[..]);
         for choice in choose(contribution, &self.pool.weight, RAYS, black_box(0.5)) {
@@ -169,7 +170,8 @@ impl<M: Model> Task for PoolTask<M> {
             for choice in choices {
                 shares += choice.contribution.iter().sum::<f32>() / (3.0 * sum);
             }
-            // Of one channel, what is chosen adds up to the sum of the weights; if not, every answer is wrong.
+            // The contributions of the chosen rays, averaged over the channels, add up to the sum of the weights; if not, every answer
+            // is wrong.
             let weight = weight.map(|w| {
                 if (shares - 1.0).abs() < 1e-4 {
                     w
@@ -187,7 +189,8 @@ impl<M: Model> Task for PoolTask<M> {
     }
 }
 
-/// Candidates of eight hits: numbers of the BSDF's, directions of the light's, and a number to keep each by.
+/// Candidates of eight hits: uniform numbers for the BSDF, directions of the light, and one number per candidate that decides whether
+/// the reservoir keeps it.
 #[derive(Clone, Debug)]
 pub struct Stream {
     xi: [[f32x8; 3]; PACKETS],
@@ -195,16 +198,16 @@ pub struct Stream {
     u: [f32x8; 2 * PACKETS],
 }
 
-/// Candidates of a [`Stream`].
+/// Number of candidates in a [`Stream`], over all eight hits.
 pub const STREAMED: usize = 2 * PACKETS * 8;
 
 impl Stream {
-    /// Makes pools of `inputs`, four packets of each technique at a time.
+    /// Splits `inputs` into streams, each with four packets of candidates of either technique.
     #[must_use]
     pub fn of(inputs: &Inputs) -> Vec<Self> {
         let (xi, wi) = (xi_packets(&inputs.xi), packets(&inputs.wi));
         let (xi, wi) = (xi.as_chunks::<PACKETS>().0, wi.as_chunks::<PACKETS>().0);
-        // Other numbers than those that candidates are drawn by: from packets elsewhere.
+        // Taken from packets elsewhere, so that they differ from the numbers by which candidates are drawn.
         let u = |at: usize| from_fn(|k| xi[(at + 1 + k / PACKETS) % xi.len()][k % PACKETS][0]);
         xi.iter()
             .zip(wi)
@@ -217,7 +220,7 @@ impl Stream {
             .collect()
     }
 
-    /// Proposes, looks up, weighs and adds all candidates; then the estimate.
+    /// Proposes, looks up, weighs and adds all candidates, and then computes the estimate of each hit.
     #[inline(always)]
     #[must_use]
     pub fn keep<M: Model>(&self, bsdf: &Bsdf8<M>) -> Kept {
@@ -240,7 +243,7 @@ impl Stream {
     }
 }
 
-/// A reservoir per hit and its estimate.
+/// Reservoir of each hit with its estimate.
 #[derive(Clone, Copy, Debug)]
 pub struct Kept {
     reservoir: Reservoir8,
@@ -261,7 +264,7 @@ impl Output for Kept {
         } = self;
         for lane in 0..8 {
             let colour = |of: &[f32x8; 3]| of.map(|channel| channel.to_array()[lane]);
-            // The mean over the channels is the sum of the weights; if not, the answer is wrong.
+            // The mean over the channels is the sum of the weights; if it is not, the answer is wrong.
             let mean = colour(estimate).iter().sum::<f32>() / 3.0;
             let is_sum = (mean / sum.to_array()[lane] - 1.0).abs() < 1e-5;
             let value = if is_sum {
@@ -278,7 +281,7 @@ impl Output for Kept {
     }
 }
 
-/// A direction that was proposed; a discarded sample has density 0.
+/// Returns the answer of a proposed direction; a discarded sample has density 0.
 #[must_use]
 pub fn proposed(wi: Vec3) -> Answer {
     Answer {
@@ -294,7 +297,7 @@ impl Output for Vec3x8 {
     }
 }
 
-/// Contributions as values, weights as densities.
+/// Answers with contributions as values and weights as densities.
 impl Output for Weighed8 {
     fn answers(&self, out: &mut Vec<Answer>) {
         let ([r, g, b], weight) = (

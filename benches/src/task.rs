@@ -1,4 +1,4 @@
-//! One entry point on its inputs, and its answers in one form for all entry points.
+//! Entry points with their inputs, and one form of answer for all of them.
 
 use crate::inputs::Column;
 use crate::platform::Platform;
@@ -13,37 +13,37 @@ use hairis::simd::f32x8;
 use hairis::{Bsdf, Bsdf8, Eval, Eval8, Sample, Sample8, Vec3x8};
 use hairis_reference::{Real, Reference, ReferenceSample};
 
-/// Direction at which prepared shading points are evaluated to check them: no lobe is negligible there.
+/// Direction in which prepared shading points are evaluated to check them: no lobe is negligible for it.
 pub const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
 
-/// Answer of an entry point for one direction.
+/// Answer of an entry point for one direction, with the parts that the entry point computes.
 #[derive(Clone, Copy, Debug)]
 pub struct Answer {
-    /// The sampled direction; `None` for evaluations, zero for a discarded sample.
+    /// Sampled direction: `None` for evaluations, zero for a discarded sample.
     pub wi: Option<Vec3>,
-    /// S, if the entry point computes it.
+    /// Value S, if the entry point computes it.
     pub value: Option<[f32; 3]>,
     /// Density, if the entry point computes it.
     pub pdf: Option<f32>,
 }
 
-/// An entry point and the arguments of all its calls.
+/// Entry point with the arguments of all its calls.
 pub trait Task {
-    /// Calls per pass.
+    /// Returns the number of calls per pass.
     fn calls(&self) -> usize;
-    /// Directions per call.
+    /// Returns the number of directions per call.
     fn directions(&self) -> usize;
-    /// One call; its result is left in memory and dropped.
+    /// Makes one call, whose result is written to memory and dropped.
     fn call(&mut self, index: usize);
-    /// The answers of a pass, in the order of the directions.
+    /// Returns the answers of a pass, in the order of the directions.
     fn answers(&mut self) -> Vec<Answer>;
 }
 
-/// One pass over all calls, timed as one loop behind a dynamic call.
+/// Pass over all calls, which is timed as one loop behind a dynamic call.
 pub trait Pass {
-    /// Makes all calls; results are dropped.
+    /// Makes all calls and drops their results.
     fn pass(&mut self);
-    /// The answers of a pass, in the order of the directions.
+    /// Returns the answers of a pass, in the order of the directions.
     fn answers(&mut self) -> Vec<Answer>;
 }
 
@@ -65,13 +65,13 @@ impl<T: Task> Pass for T {
     }
 }
 
-/// The result of one call: of one direction, or of eight.
+/// Result of one call, for one direction or for eight.
 pub trait Output {
-    /// Adds an answer for each direction.
+    /// Appends an answer for each direction to `out`.
     fn answers(&self, out: &mut Vec<Answer>);
 }
 
-/// A function of one argument and the arguments it is given.
+/// Task that calls a function of one argument with each of a list of arguments.
 #[derive(Debug)]
 pub struct Each<I, O, F> {
     inputs: Vec<I>,
@@ -81,7 +81,7 @@ pub struct Each<I, O, F> {
 }
 
 impl<I, O: Output, F: Fn(&I) -> O> Each<I, O, F> {
-    /// Calls `call` once for each of `inputs`; a call answers for `directions` directions.
+    /// Makes a task that calls `call` once for each of `inputs`; each call answers for `directions` directions.
     pub const fn new(directions: usize, inputs: Vec<I>, call: F) -> Self {
         Self {
             inputs,
@@ -99,8 +99,8 @@ impl<I, O: Output, F: Fn(&I) -> O> Task for Each<I, O, F> {
     fn directions(&self) -> usize {
         self.directions
     }
-    // References are hidden from the optimiser, not values, so that no copy is timed; and calls stay apart, so
-    // that no loop over one lane is made into one over four.
+    // References are hidden from the optimiser, not values, so that no copy is timed. Calls stay separate, so that no loop over one
+    // lane is vectorised into a loop over four.
     #[inline(always)]
     fn call(&mut self, index: usize) {
         black_box(&(self.call)(black_box(&self.inputs[index])));
@@ -114,7 +114,7 @@ impl<I, O: Output, F: Fn(&I) -> O> Task for Each<I, O, F> {
     }
 }
 
-/// A pass that calls `call` with each of `inputs`.
+/// Makes a pass that calls `call` with a copy of each of `inputs`.
 pub fn task<'a, I, O, F>(inputs: &[I], call: F) -> Box<dyn Pass + 'a>
 where
     I: Clone + 'a,
@@ -124,7 +124,7 @@ where
     Box::new(Each::new(1, inputs.to_vec(), call))
 }
 
-/// A function of one argument with several results, each passed on as it comes.
+/// Pass over a function of one argument that yields several results, each passed on as soon as it is computed.
 #[derive(Debug)]
 pub struct Several<I, O, F> {
     inputs: Vec<I>,
@@ -134,8 +134,7 @@ pub struct Several<I, O, F> {
 }
 
 impl<I, O: Output, F: Fn(&I, &mut dyn FnMut(&O))> Several<I, O, F> {
-    /// Calls `call` once for each of `inputs`; of its answers in the order they come, the `i`th is the answer to direction
-    /// `place(i)`.
+    /// Makes a pass that calls `call` once for each of `inputs`. The `i`th answer that the calls yield belongs to direction `place(i)`.
     pub const fn new(inputs: Vec<I>, place: fn(usize) -> usize, call: F) -> Self {
         Self {
             inputs,
@@ -168,8 +167,8 @@ impl<I, O: Output, F: Fn(&I, &mut dyn FnMut(&O))> Pass for Several<I, O, F> {
     }
 }
 
-/// A function from `I` slices to `N` (the density; the value; or the value, the density and more), and the columns that
-/// it is given parts of.
+/// Task that calls a function from `I` slices to `N` slices with parts of columns. The outputs are the density; the value; or the
+/// value, the density and more.
 #[derive(Debug)]
 pub struct Slices<F, const N: usize, const I: usize = 3> {
     inputs: [Column; I],
@@ -180,7 +179,7 @@ pub struct Slices<F, const N: usize, const I: usize = 3> {
     read: fn([f32; N]) -> Answer,
 }
 
-/// The answer in a row of `N` columns.
+/// Returns the answer that a row of `N` columns holds.
 fn read<const N: usize>(row: [f32; N]) -> Answer {
     Answer {
         wi: (N > 4).then(|| Vec3::new(row[4], row[5], row[6])),
@@ -197,7 +196,7 @@ impl<F, const N: usize, const I: usize> Slices<F, N, I>
 where
     F: Fn([&[f32]; I], [&mut [f32]; N]) -> Result<(), LengthError>,
 {
-    /// Calls `call` on `len` rows after `len` rows.
+    /// Makes a task that calls `call` on consecutive groups of `len` rows; a remainder of fewer rows is dropped.
     pub fn new(len: usize, rows: &[[f32; I]], call: F) -> Self {
         Self {
             inputs: from_fn(|k| Column::new(k, rows.iter().map(|row| row[k]))),
@@ -209,7 +208,7 @@ where
         }
     }
 
-    /// With another reading of a row of the outputs.
+    /// Replaces the function that makes an answer of a row of the outputs.
     #[must_use]
     pub fn read_by(self, read: fn([f32; N]) -> Answer) -> Self {
         Self { read, ..self }
@@ -229,7 +228,7 @@ where
     #[inline(always)]
     fn call(&mut self, index: usize) {
         let (at, len) = (index * self.len, self.len);
-        // Loops, not `map`, which is not inlined here: it would take a quarter of the time of short slices.
+        // Loops instead of `map`, which is not inlined here and would take a quarter of the time of short slices.
         let (mut inputs, mut outputs): ([&[f32]; I], [&mut [f32]; N]) =
             ([&[]; I], from_fn(|_| Default::default()));
         for (part, column) in inputs.iter_mut().zip(black_box(&self.inputs)) {
@@ -238,7 +237,7 @@ where
         for (part, column) in outputs.iter_mut().zip(&mut self.outputs) {
             *part = column.part_mut(at, len);
         }
-        // All slices are of one length; if they were not, the answers would be found wrong.
+        // All slices have the same length; if they had not, the check of the answers would fail.
         let done = (self.call)(inputs, outputs);
         black_box((&self.outputs, done.is_ok()));
     }
@@ -250,9 +249,9 @@ where
     }
 }
 
-/// A number in single precision, of the libm crate's functions or of the platform's.
+/// Number in single precision, with the functions of the libm crate or of the platform.
 pub trait Single: Real {
-    /// The number.
+    /// Returns the plain `f32`.
     fn number(self) -> f32;
 }
 
@@ -278,7 +277,7 @@ impl<T: Single> Output for ([T; 3], T) {
     }
 }
 
-/// A function of eight arguments: no density.
+/// Answers of an elementary function on eight lanes, which has no density.
 impl Output for [f32x8; 2] {
     fn answers(&self, out: &mut Vec<Answer>) {
         let [first, second] = self.map(f32x8::to_array);
@@ -344,7 +343,7 @@ impl Output for Sample8 {
     }
 }
 
-/// A shading point of the formulas, in numbers of one type.
+/// Shading point of the formulas in numbers of type `T`, whose answer is its evaluation in the direction [`PROBE`].
 #[derive(Debug)]
 pub struct Point<R, T = f32>(pub R, pub PhantomData<T>);
 

@@ -1,9 +1,9 @@
-//! Two calls timed in turns, stretch by stretch; a ratio is the median of those of all turns.
+//! Timing of two calls in turns, stretch by stretch. A ratio is the median of the ratios of all turns.
 
 use std::env;
 use std::time::Instant;
 
-/// Turns of a pair; one in a test, as Cargo runs benches as tests, too.
+/// Returns the number of turns in which a pair is timed: a single one without `--bench`, because Cargo also runs benches as tests.
 #[must_use]
 pub fn turns() -> usize {
     const TURNS: usize = 301;
@@ -14,7 +14,7 @@ pub fn turns() -> usize {
     }
 }
 
-/// Time of a call, ns.
+/// Returns the time of a call, in ns.
 fn stretch(call: &mut impl FnMut()) -> f64 {
     let start = Instant::now();
     call();
@@ -26,12 +26,13 @@ fn median(times: &mut [f64]) -> f64 {
     times[times.len() / 2]
 }
 
-/// Times two calls in turns. Returns the medians of ours, of the base and of their ratio; times in ns, per each of so many hits.
+/// Times two calls in turns. Returns the medians of the time of `ours`, of the time of `base` and of their ratio. Times are in ns per
+/// hit; each call handles `hits` hits.
 pub fn pair(turns: usize, hits: usize, mut ours: impl FnMut(), mut base: impl FnMut()) -> [f64; 3] {
     let [mut a, mut b, mut ratio] = [vec![], vec![], vec![]];
     for turn in 0..=turns {
         let (first, second);
-        // Whichever is first changes from turn to turn.
+        // The order of the two calls changes from turn to turn.
         if turn % 2 == 0 {
             (first, second) = (stretch(&mut ours), stretch(&mut base));
         } else {

@@ -1,14 +1,14 @@
-//! Agreement of kernels and formulas: one lane and eight lanes of every instruction set against the
-//! reference in `f64`, on random hair, in the three regions where digits are lost.
+//! Agreement of kernels and formulas. One lane and eight lanes of every instruction set are compared with the reference in `f64`, on random
+//! hair, in the three regions where digits are lost.
 //!
-//! - Bounds: those of the registry, [`accuracy`], of directions further than 1e-3 rad from the axis: 1e-5 for the
-//!   published density, 1e-5 for a Cauchy and 1e-4 for a Gaussian value, relative. The worst of all must hold them.
-//! - Samples: density, value and weight are compared with those of the direction that was returned; the direction
-//!   through the lobe's cdf, which must return the numbers it was sampled with.
-//! - Left out: `|phi|` within 1e-6 rad of pi/2, where the glints' density jumps (ERRATA E3) and a rounded azimuth may
-//!   fall on either side; and within 1e-9 rad of pi, where the reference itself has no digits left.
-//! - Next to `|phi|` = pi the R and TRT-g lobes vanish as `cos(phi / 2)`, which a rounded azimuth does not determine: of the
-//!   errors beyond a bound, those that rotating `wi` by 2^-22 rad does not explain are counted apart.
+//! - Bounds: those of the registry, [`accuracy`], for directions further than 1e-3 rad from the axis. Relative, 1e-5 for the published
+//!   density, 1e-5 for a Cauchy and 1e-4 for a Gaussian value. The largest error of all must keep the bound.
+//! - Samples: density, value and weight are compared with those of the returned direction. The lobe's cdf at that direction must return the
+//!   numbers that the direction was sampled with.
+//! - Left out: `|phi|` within 1e-6 rad of pi/2, because the glints' density jumps there (ERRATA E3) and a rounded azimuth may fall on
+//!   either side; and within 1e-9 rad of pi, because the reference itself has no digits left.
+//! - Next to `|phi|` = pi the R and TRT-g lobes vanish as `cos(phi / 2)`, which a rounded azimuth does not determine. Errors beyond a bound
+//!   are therefore counted apart if rotating `wi` by 2^-22 rad does not explain them.
 //! - Absolute errors of Gaussian values up to `2^-114` per lobe are allowed: see [`slack`](hairis_reference::slack).
 
 mod measure;
@@ -25,23 +25,23 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Region of directions.
+/// Region of directions in which kernels and formulas are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Region {
-    /// Uniform on the sphere; samples wherever they fall.
+    /// Directions uniform on the sphere, and samples wherever they fall.
     General,
-    /// `wi` 1e-3 to 1e-2 rad from the fibre's axis, half of the time `wo` too.
+    /// Directions `wi` at 1e-3 to 1e-2 rad from the fibre's axis; half of the time `wo` is near the axis as well.
     Axis,
-    /// `|phi|` within 1e-2 rad of pi.
+    /// Directions with `|phi|` within 1e-2 rad of pi.
     Back,
 }
 
 impl Region {
-    /// All of them, in the order of the tables.
+    /// Every region, in the order of the tables.
     pub const ALL: [Self; 3] = [Self::General, Self::Axis, Self::Back];
 
-    /// For tables.
+    /// Returns the name of the region in tables.
     pub(crate) const fn label(self) -> &'static str {
         match self {
             Self::General => "general",
@@ -51,13 +51,13 @@ impl Region {
     }
 }
 
-/// Compared quantity.
+/// Quantity of the kernels that is compared with the formulas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
     /// Density of a given direction.
     Pdf,
-    /// S of a given direction, the worst of three channels.
+    /// Value S of a given direction, as the worst of three channels.
     Value,
     /// Density that a sample reports.
     SamplePdf,
@@ -70,7 +70,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// All of them, in the order of the tables.
+    /// Every quantity, in the order of the tables.
     pub const ALL: [Self; 6] = [
         Self::Pdf,
         Self::Value,
@@ -80,7 +80,7 @@ impl Quantity {
         Self::SampleCdf,
     ];
 
-    /// For tables.
+    /// Returns the name of the quantity in tables.
     pub(crate) const fn label(self) -> &'static str {
         match self {
             Self::Pdf => "pdf",
@@ -92,7 +92,7 @@ impl Quantity {
         }
     }
 
-    /// The largest error allowed.
+    /// Returns the largest error that is allowed.
     pub(crate) const fn bound(self, accuracy: &Accuracy) -> f64 {
         match self {
             Self::Pdf => accuracy.pdf,
@@ -105,24 +105,24 @@ impl Quantity {
     }
 }
 
-/// The errors of one quantity on one code path in one region: a row of the table.
+/// Errors of one quantity on one code path in one region, which are a row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AgreementResult {
-    /// The model.
+    /// Name of the model.
     pub model: &'static str,
-    /// The sampler, of a model with several: S does not depend on it.
+    /// Name of the sampler, for a model with several. S does not depend on the sampler.
     pub sampler: Option<&'static str>,
-    /// `one lane`, `eight lanes, one point` or `eight lanes, eight points`.
+    /// Code path: `one lane`, `eight lanes, one point` or `eight lanes, eight points`.
     pub path: &'static str,
-    /// Instruction set of the lanes; `scalar` for one lane.
+    /// Instruction set of the lanes, or `scalar` for one lane.
     pub level: &'static str,
     /// Region of the directions.
     pub region: Region,
-    /// Compared quantity.
+    /// Quantity that is compared.
     pub quantity: Quantity,
     /// Number of directions.
     pub count: usize,
-    /// 99.9th percentile of the error: relative, of a cdf absolute.
+    /// 99.9th percentile of the error, which is relative, or absolute for a cdf.
     pub p999: f64,
     /// Largest error.
     pub worst: f64,
@@ -130,32 +130,33 @@ pub struct AgreementResult {
     pub bound: f64,
     /// Number of directions beyond the bound.
     pub beyond: usize,
-    /// Number of these that rounding the azimuth by 2^-22 rad does not explain: there a formula loses digits.
+    /// Number of directions beyond the bound whose error a rotation of the azimuth by 2^-22 rad does not explain, so that a formula loses
+    /// digits.
     pub unexplained: usize,
-    /// Whether the largest error is within the bound, of at least one direction.
+    /// Whether there is at least one direction and the largest error is within the bound.
     pub passed: bool,
-    /// Case of the largest error; of those unexplained, if there are any.
+    /// Case of the largest error. If there are unexplained errors, the largest of those.
     pub worst_case: Option<WorstCase>,
 }
 
-/// A shading point and a direction, written as `hairis eval` reads them.
+/// Shading point and direction, written as `hairis eval` reads them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WorstCase {
-    /// The model.
+    /// Name of the model.
     pub model: &'static str,
-    /// The word that selects among models of one name, such as the sampler.
+    /// Word that selects among models of one name, such as the sampler.
     #[serde(flatten)]
     pub choice: BTreeMap<&'static str, &'static str>,
-    /// Parameters.
+    /// Parameters of the hair.
     pub params: serde_json::Value,
     /// Offset across the fibre, for a model of the near field.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub h: Option<f32>,
-    /// The shading point's direction.
+    /// Direction of the shading point's viewer.
     pub wo: [f32; 3],
-    /// The direction, given or drawn.
+    /// Direction that was given or drawn.
     pub wi: [f32; 3],
-    /// The numbers it was drawn with.
+    /// Uniform numbers that the direction was drawn with.
     pub xi: Option<[f32; 3]>,
 }
 
@@ -179,12 +180,12 @@ impl WorstCase {
     }
 }
 
-/// Compares every model of the registry with its formulas everywhere: hair, directions and numbers of this seed, so many packets
-/// of eight directions per region and model. A thousand packets take about a second on one core.
+/// Compares every model of the registry with its formulas, in every region. `seed` selects the hair, the directions and the numbers;
+/// `packets` counts the packets of eight directions per region and model. A thousand packets take about a second on one core.
 ///
 /// # Errors
 ///
-/// Never: the parameters that are drawn are within the ranges accepted.
+/// Returns an error only if drawn parameters are rejected, which does not happen because all are drawn within the accepted ranges.
 pub fn run(seed: u64, packets: u32) -> Result<Vec<AgreementResult>, ParamError> {
     let mut rows = Vec::new();
     for region in Region::ALL {
@@ -195,7 +196,7 @@ pub fn run(seed: u64, packets: u32) -> Result<Vec<AgreementResult>, ParamError> 
     Ok(rows)
 }
 
-/// The rows of one model in one region; the packets are shared by all code paths.
+/// Returns the rows of one model in one region. All code paths share the packets.
 fn of_model(
     model: ModelId,
     formulas: &Formulas<'_>,
@@ -231,7 +232,7 @@ fn of_model(
     let labels = paths
         .iter()
         .flat_map(|path| Quantity::ALL.map(|quantity| (*path, quantity)));
-    // Not every model has a cdf.
+    // Models without a cdf get no row for it.
     let compared = labels.zip(all).filter(|((_, quantity), column)| {
         *quantity != Quantity::SampleCdf || !column.errors.is_empty()
     });
@@ -240,7 +241,7 @@ fn of_model(
         .collect())
 }
 
-/// The errors behind a row.
+/// Errors behind a row of the table.
 #[derive(Clone, Debug, Default)]
 struct Column {
     errors: Vec<f64>,
@@ -262,7 +263,7 @@ impl Column {
     }
 
     fn keep_worst(&mut self, other: Option<LocatedError>) {
-        // An error that rounding does not explain matters more than a larger one that it does.
+        // An unexplained error takes precedence over a larger error that rounding explains.
         let rank = |m: &Option<LocatedError>| m.map_or((false, -1.0), |m| (m.unexplained, m.error));
         if rank(&other) > rank(&self.worst) {
             self.worst = other;
@@ -323,7 +324,7 @@ mod tests {
             "a row is missing"
         );
         for row in &rows {
-            // Few samples of wide lobes fall into a narrow region, however they are seeded: 3 in 800 near the axis.
+            // Few samples of wide lobes fall into a narrow region, whatever the seed: 3 in 800 near the axis.
             let sampled = !matches!(row.quantity, Quantity::Pdf | Quantity::Value);
             let least = if row.region == Region::General || (!sampled && row.sampler.is_some()) {
                 40

@@ -1,4 +1,4 @@
-//! The paper's claims, each with its figures and the verdict that follows from them.
+//! Claims of the paper, each with its figures and the verdict that follows from them.
 //!
 //! - `energy`: the estimated energies are within 1%.
 //! - `tails`: wider tails do not increase variance.
@@ -9,15 +9,15 @@
 //!
 //! # Verdicts
 //!
-//! A [`Claim`] has a [`Threshold`], stated beside it, and two figures: the worst of all the cases the claim is made for, and
-//! the worst within stated limits. If the first keeps the threshold, the claim holds. If only the second does, it holds
-//! within those limits. Otherwise it is false. A figure keeps the threshold if it does so by two of its standard errors, or
-//! by the error of the quadrature. Nothing else decides ([`Claim::verdict`]).
+//! A [`Claim`] has a [`Threshold`], stated beside it, and two figures: the worst of all the cases that the claim is made for, and the worst
+//! within stated limits. If the first keeps the threshold, the claim holds. If only the second does, the claim holds within those limits.
+//! Otherwise the claim is false. A figure keeps the threshold only with a margin: two of its standard errors, or the error of the
+//! quadrature. Nothing else decides ([`Claim::verdict`]).
 //!
 //! # Determinism
 //!
-//! Figures depend on the seed and on the build, whatever the number of threads; those whose [`Origin`] is
-//! [`Timed`](Origin::Timed), all in one claim, depend on the machine as well.
+//! Figures depend on the seed and on the build, whatever the number of threads. Figures whose [`Origin`] is [`Timed`](Origin::Timed), all
+//! of them in one claim, depend on the machine as well.
 
 mod bounded;
 mod bounds;
@@ -48,36 +48,36 @@ use hairis_instruments::progress::Progress;
 use hairis_instruments::shard::Shard;
 use serde::Serialize;
 
-/// All results; the content of `claims.json`.
+/// Results of `hairis claims`, written to `claims.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Claims {
-    /// The command's settings.
+    /// Settings of the command.
     pub settings: Settings,
-    /// Machine and build.
+    /// Machine and build that computed the figures.
     pub machine: Machine,
-    /// The claims, in the order of the paper's sections; misprints come last.
+    /// Verdicts in the order of the paper's sections, with the misprints last.
     pub claims: Vec<Claim>,
 }
 
-/// Settings that the figures depend on.
+/// Settings of `hairis claims` that the figures depend on.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Settings {
     /// Seed of everything that was drawn.
     pub seed: u64,
-    /// Whether it was the short run.
+    /// Whether this was the short run.
     pub quick: bool,
-    /// Cells of the parameter grid.
+    /// Number of cells of the parameter grid.
     pub cells: usize,
-    /// Samples of each model in a cell.
+    /// Number of samples of each model in a cell.
     pub samples: usize,
-    /// The lights, in the order of the claims.
+    /// Names of the lights, in the order of the claims.
     pub lights: [&'static str; 5],
 }
 
-/// Results of quadrature for every cell and model.
+/// Quadrature results of every cell and model.
 type FoundCells = [(Cell, ModelKind, HairFigures)];
 
-/// Everything that the figures depend on: with the same header they are the same, but for times.
+/// Returns the header that holds everything the figures depend on. Runs with equal headers have equal figures, except for times.
 #[must_use]
 pub fn header(seed: u64, quick: bool) -> Header {
     let sky = Sky::default().environment();
@@ -90,13 +90,13 @@ pub fn header(seed: u64, quick: bool) -> Header {
     plan.header(Shard::WHOLE)
 }
 
-/// Computes the claims with this seed; if `quick`, on the 48 cells and with the samples of the
-/// short study, in place of all 3024. Workers call `progress` with the share that is done, from 0
-/// to 1, in no order. Figures are taken from `journal`, or put there.
+/// Computes the claims with this seed, on all 3024 cells or, if `quick`, on the 48 cells and with the samples of the short study. Workers
+/// call `progress` with the share that is done, from 0 to 1, in no order. Figures that `journal` holds are taken from it, and new ones are
+/// added.
 ///
 /// # Errors
 ///
-/// If `journal` cannot be read or written. The hair of the grid is within the accepted ranges.
+/// Returns an error if `journal` cannot be read or written. The hair of the grid is within the accepted ranges.
 pub fn run(
     seed: u64,
     quick: bool,
@@ -111,7 +111,7 @@ pub fn run(
         materials: &[],
     };
     let grid = plan.grid();
-    // Quadrature and sampling take about as long.
+    // Quadrature and sampling take about equally long.
     let [first, second] = [0.0, 0.5].map(|begin| {
         move |done: usize, total: usize| progress(begin + 0.5 * done as f64 / total as f64)
     });
@@ -148,7 +148,7 @@ pub fn run(
     })
 }
 
-/// All that is sampled under the lights of a plan: the claims by light, and the figures of the example.
+/// Returns all figures that are sampled under the lights of a plan: the claims by light, and those of the example.
 #[cfg(test)]
 pub(crate) fn sampled(plan: &Plan<'_>, journal: &Journal) -> Result<Vec<String>, Error> {
     let progress = Progress::new(plan.grid().len(), &|_, _| ());
@@ -158,7 +158,7 @@ pub(crate) fn sampled(plan: &Plan<'_>, journal: &Journal) -> Result<Vec<String>,
     Ok(claims.chain([format!("{example:?}")]).collect())
 }
 
-/// The hair of a cell.
+/// Returns the hair of a cell.
 fn hair_of(cell: &Cell, model: ModelKind) -> Result<Hair, ParamError> {
     Ok(Hair::new(
         model,

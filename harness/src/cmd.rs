@@ -1,4 +1,4 @@
-//! The subcommands, one per file.
+//! Subcommands of `hairis`, one per file, and the helpers that they share.
 
 pub mod claims;
 pub mod compare;
@@ -16,11 +16,11 @@ use hairis_instruments::table::Table;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Executes a command.
+/// Executes a command with its flags.
 ///
 /// # Errors
 ///
-/// [`Error`] if it was stopped, or if a check failed.
+/// Returns an [`Error`] if the command was stopped, or if a check failed.
 pub fn run(command: &Command) -> Result<(), Error> {
     if !matches!(command, Command::Eval(_) | Command::Shader(_)) {
         check_threads();
@@ -36,8 +36,8 @@ pub fn run(command: &Command) -> Result<(), Error> {
     }
 }
 
-/// The environment in a file or a layer of it, or the procedural sky if there is none, and its name in reports. Its oddities go to standard
-/// error; a map without light is refused.
+/// Loads the environment from a file, or a layer of the file, and returns it with its name in reports; without a file, returns the
+/// procedural sky. Oddities of the file are reported on standard error. A map without light is an error.
 fn environment(path: Option<&Path>, layer: Option<&str>) -> Result<(Environment, String), Error> {
     let Some(path) = path else {
         return Ok((Sky::default().environment(), "procedural sky".to_owned()));
@@ -53,7 +53,7 @@ fn environment(path: Option<&Path>, layer: Option<&str>) -> Result<(Environment,
     Ok((environment, path.display().to_string()))
 }
 
-/// Prints tables on standard output. A reader that leaves early is told the file that has them.
+/// Prints tables on standard output. If the reader closes the pipe early, names the file that has the tables on standard error.
 fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>, file: &Path) -> Result<(), Error> {
     let mut out = io::stdout().lock();
     for table in tables {
@@ -71,7 +71,7 @@ fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>, file: &Path) -> Res
     Ok(())
 }
 
-/// Names the failures on standard error.
+/// Reports the failures on standard error, and returns an error if there are any.
 fn report_failures(failures: &[String]) -> Result<(), Error> {
     failures
         .iter()

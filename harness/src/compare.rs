@@ -1,4 +1,4 @@
-//! The main job: speed, agreement and sample efficiency in one run, with every figure's origin.
+//! Main command of the harness: speed, agreement and sample efficiency in one run, with the origin of every figure.
 
 mod charts;
 mod page;
@@ -24,32 +24,32 @@ use hairis_instruments::machine::Machine;
 use hairis_instruments::table::Table;
 use serde::Serialize;
 
-/// Everything that was found; `compare.json` is this.
+/// Results of a comparison, written to `compare.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
-    /// The command's settings.
+    /// Settings of the command.
     pub settings: CompareSettings,
-    /// Machine and build that ran it.
+    /// Machine and build that ran the comparison.
     pub machine: Machine,
-    /// Time a direction.
+    /// Time per direction.
     pub speed: SpeedReport,
     /// Errors against the reference in double precision.
     pub agreement: Vec<AgreementResult>,
-    /// Variance a sample.
+    /// Variance per sample.
     pub efficiency: EfficiencyResult,
-    /// One ray for many candidates.
+    /// Variance and time of one ray chosen from many candidates.
     pub rays: RaysResult,
-    /// Materials that were asked for, each from the inclinations of `efficiency`.
+    /// Materials that the flags name, each from the inclinations of `efficiency`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<MaterialPose>,
 }
 
-/// Settings of a comparison.
+/// Settings of a comparison, as the flags give them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CompareSettings {
     /// Seed of everything that is drawn.
     pub seed: u64,
-    /// A tenth of the samples: for a first look, and for tests.
+    /// Whether to take a tenth of the samples, for a first look and for tests.
     pub quick: bool,
     /// Description of the environment light: a file, or the procedural sky.
     pub environment: String,
@@ -57,12 +57,12 @@ pub struct CompareSettings {
     pub environment_notes: Vec<String>,
 }
 
-/// Runs the comparison. `progress` is called with the name of the part that runs and the share of it that is done, from 0
-/// to 1. Nothing else runs while speed is measured, and while rays are timed, which comes first among theirs.
+/// Runs the comparison. `progress` is called with the name of the part that runs and the share of it that is done, from 0 to 1. Nothing
+/// else runs while speed is measured, nor while rays are timed, which is the first step of their part.
 ///
 /// # Errors
 ///
-/// Never in practice: the hair that is compared is within the accepted ranges.
+/// Returns an error only if drawn hair is rejected, which does not happen in practice because all hair is within the accepted ranges.
 pub fn run(
     settings: CompareSettings,
     environment: &Environment,
@@ -109,10 +109,10 @@ pub fn run(
     })
 }
 
-/// Samples at a shading point over which its preparation is spread, as in direct lighting.
+/// Samples of a shading point that share its preparation, as in direct lighting.
 const SAMPLES_A_POINT: usize = 16;
 
-/// Times of a sample on eight lanes, set-up included.
+/// Returns the times of a sample on eight lanes, set-up included.
 fn sample_costs(times: &Times) -> SampleCosts {
     let of = |model| SAMPLERS.map(|sampler| times.ns(model, sampler, SAMPLES_A_POINT).value);
     SampleCosts {
@@ -126,13 +126,13 @@ impl Comparison {
         self.materials.iter().flat_map(MaterialPose::rows).collect()
     }
 
-    /// The table of the materials that were asked for.
+    /// Returns the table of the materials that the flags name.
     fn material_table(&self) -> Option<Table> {
         let rows = self.material_rows();
         (!rows.is_empty()).then(|| materials::table(&rows))
     }
 
-    /// Failures: wrong answers, errors beyond their bounds, biased estimates. Empty if there are none.
+    /// Returns one line for each failure: wrong answers, errors beyond their bounds, and biased estimates. Empty if all checks pass.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
         let slow = self.speed.rows.iter().filter(|row| !row.passed).map(|row| {
@@ -170,7 +170,7 @@ impl Comparison {
     }
 }
 
-/// The values without repetitions, in the order in which they first occur.
+/// Returns the values without repetitions, in the order in which they first occur.
 fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
     let mut all = Vec::new();
     for value in values {

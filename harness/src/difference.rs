@@ -2,17 +2,16 @@
 //!
 //! # What is measured
 //!
-//! For each cell of the [`Grid`] and each choice of the Cauchy model's widths ([`Width`]), one of which [fits](crate::fit) all
-//! parameters: the albedo of either model, and
-//! the distance of their `S cos theta_i` (the mean of RGB, per steradian of `wi`) over the sphere, in L1 and in L2, each
-//! relative to the Gaussian model's own norm
+//! Measured are, for each cell of the [`Grid`] and each choice of the Cauchy model's widths ([`Width`]), one of which [fits](crate::fit)
+//! all parameters, the albedo of either model and the distance of their `S cos theta_i` over the sphere. `S cos theta_i` is the mean of
+//! RGB, per steradian of `wi`. The distance is in L1 and in L2, relative to the Gaussian model's own norm,
 //! - as they are,
 //! - with the Cauchy model scaled to the albedo of the Gaussian one: the shape alone,
-//! - either after a blur of [`SIGMA_DEG`]: the view in a light that wide, or without finer detail. The blur
-//!   is the von Mises-Fisher density of `kappa = 1 / sigma^2`, the Gaussian of the sphere.
+//! - either after a blur of [`SIGMA_DEG`], which stands for a light of that width or a view without finer detail. The blur is the von
+//!   Mises-Fisher density of `kappa = 1 / sigma^2`, the Gaussian of the sphere.
 //!
-//! An L1 of 0.3 means a difference of 30% of the light that the Gaussian model reflects: reflected elsewhere, not at all, or
-//! in addition. With equal albedos half of it is moved.
+//! An L1 of 0.3 means a difference of 30% of the light that the Gaussian model reflects: light reflected elsewhere, not at all, or in
+//! addition. With equal albedos, half of that light has moved.
 //!
 //! # Method
 //!
@@ -45,31 +44,31 @@ use lobes::{Kind, ViewedHair};
 use measure::{HairValues, NUMBERS};
 use rayon::prelude::*;
 
-/// Points of the rule on each panel between breakpoints.
+/// Number of points of the rule on each panel between breakpoints.
 const ORDER: usize = 8;
 
-/// Latitudes, and longitudes of half a sphere, at which blurred functions are compared.
+/// Number of latitudes, and of longitudes of half a sphere, at which blurred functions are compared.
 const LATITUDES: usize = 96;
 
-/// Choice of the widths of the Cauchy model: a factor `k` on those of the Gaussian one.
+/// Choice of the widths of the Cauchy model: a factor `k` on the widths of the Gaussian one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
     /// Equal widths, as in the paper: [`Cauchy::PAPER`].
     Paper,
-    /// Bells as high at half their peak: [`Cauchy::HALF_WIDTH`].
+    /// Bells of the same half width at half height: [`Cauchy::HALF_WIDTH`].
     HalfWidth,
     /// Bells of the same area: [`Cauchy::AREA`].
     Area,
-    /// The factor with the least mean square, over the grid, of the relative L2 difference as it is.
+    /// Factor with the least mean square, over the grid, of the relative L2 difference without blur or scale.
     BestOfGrid,
-    /// The factor with the least L2 difference as it is, for each cell.
+    /// Factor with the least L2 difference without blur or scale, for each cell.
     BestOfCell,
-    /// No factor: all parameters of each hair are [fitted](crate::fit) in L1, from all inclinations of the grid together.
+    /// No factor. All parameters of each hair are [fitted](crate::fit) in L1, from all inclinations of the grid together.
     Refitted,
 }
 
 impl Width {
-    /// All of them, in the order of reports.
+    /// Every choice of widths, in the order of reports.
     pub const ALL: [Self; 6] = [
         Self::Paper,
         Self::HalfWidth,
@@ -79,7 +78,7 @@ impl Width {
         Self::Refitted,
     ];
 
-    /// Name in reports and in rows.
+    /// Returns the name of the choice in reports and in rows.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -93,35 +92,35 @@ impl Width {
     }
 }
 
-/// One row: a cell with one choice of widths.
+/// Row of the table of differences: a cell with one choice of widths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DifferenceRow {
-    /// The hair, and the inclination it is seen from.
+    /// Hair, and the inclination that it is seen from.
     pub cell: Cell,
-    /// Choice of the factor.
+    /// Choice of the Cauchy model's widths.
     pub width: Width,
-    /// The measured differences.
+    /// Differences that were measured.
     pub figures: Differences,
 }
 
-/// The differences over a grid.
+/// Differences between the two models over a grid, for every choice of widths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// The grid.
+    /// Grid whose cells were measured.
     pub grid: Grid,
-    /// Cells outermost, in the order of the grid, then [`Width::ALL`].
+    /// Rows: cells outermost, in the order of the grid, then [`Width::ALL`].
     pub rows: Vec<DifferenceRow>,
-    /// Parameters of the Cauchy model of [`Width::Refitted`], by hair: the inclinations of a hair are one after the other.
+    /// Parameters of the Cauchy model of [`Width::Refitted`], one entry per hair, whose inclinations are consecutive cells.
     refits: Vec<HairParams>,
 }
 
 impl Difference {
-    /// Computes them, on all cores. Figures are taken from `journal`, or put there. Most of the time goes into the fits, whose
-    /// numbers `progress` gets: done, and all.
+    /// Computes the differences over a grid, on all cores. Figures that `journal` holds are taken from it, and new ones are added. Most of
+    /// the time goes into the fits, so `progress` is called with the number of fits done and of all fits.
     ///
     /// # Errors
     ///
-    /// If `journal` cannot be read or written. The hair of [`Grid::FULL`] and [`Grid::QUICK`] is accepted.
+    /// Returns an error if `journal` cannot be read or written. The hair of [`Grid::FULL`] and [`Grid::QUICK`] is accepted.
     pub fn over(
         grid: Grid,
         journal: &Journal,
@@ -130,7 +129,7 @@ impl Difference {
         const BEST: &str = "best factor";
         let key = |cell: &Cell| format!("difference in cell {}", cell.index);
         let cells: Vec<Cell> = grid.cells().collect();
-        // All hair has its say in the best factor, and after that the hair of cells that are left.
+        // All hair is needed for the best factor, and after that the hair of cells that are left.
         let is_needed = |cell: &Cell| !(journal.has(BEST) && journal.has(&key(cell)));
         let hair: Vec<Option<HairValues>> = cells
             .par_iter()
@@ -183,19 +182,19 @@ impl Difference {
         })
     }
 
-    /// Parameters of the Cauchy model of [`Width::Refitted`] for the hair of a cell.
+    /// Returns the parameters of the Cauchy model of [`Width::Refitted`] for the hair of a cell.
     pub(crate) fn refit(&self, cell: &Cell) -> &HairParams {
         &self.refits[refit::hair_of(&self.grid, cell)]
     }
 
-    /// The rows of one choice of widths.
+    /// Returns the rows of one choice of widths, in the order of the grid.
     pub fn of(&self, width: Width) -> impl Iterator<Item = &DifferenceRow> + Clone {
         self.rows.iter().filter(move |row| row.width == width)
     }
 }
 
-/// `S cos theta_i` after the blur, seen from `theta_o` in rad: of the Gaussian model, and of a Cauchy model with its widths
-/// times `k`.
+/// Returns the harmonics of the blurred `S cos theta_i`, seen from `theta_o` in rad: for the Gaussian model, and for a Cauchy model with
+/// its widths times `k`.
 pub(crate) fn blurred(params: &HairParams, theta_o: f64, k: f64) -> Vec<Harmonics> {
     let view = ViewedHair::new(params, theta_o);
     let rule = view.rule(ORDER);
@@ -203,7 +202,7 @@ pub(crate) fn blurred(params: &HairParams, theta_o: f64, k: f64) -> Vec<Harmonic
     Blur::new(SIGMA_DEG.to_radians(), 1, 1).harmonics(&rule, &values)
 }
 
-/// The figures of a hair by the choices of its widths.
+/// Returns the figures of a hair, one for each choice of its widths.
 fn figures(
     hair: &HairValues,
     best_of_grid: f64,
@@ -281,7 +280,7 @@ mod tests {
         let found = &*QUICK;
         let views = Grid::QUICK.theta_o_deg.len() * Width::ALL.len();
         for rows in found.rows.chunks(views) {
-            // The light that is elsewhere, from all inclinations.
+            // Light that is reflected elsewhere, from all inclinations.
             let distance = |width: Width| -> f64 {
                 let rows = rows.iter().filter(|row| row.width == width);
                 let light = rows.map(|row| row.figures.plain.l1 * row.figures.albedo_gaussian);

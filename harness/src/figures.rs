@@ -1,4 +1,4 @@
-//! Figures from the kernels alone: the paper's figures 4 and 5, and the scattering function around the fibre.
+//! Figures drawn from the kernels alone: the paper's figures 4 and 5, and the scattering function around the fibre.
 
 mod looks;
 
@@ -12,11 +12,10 @@ use hairis_instruments::plot::{Axis, ScatterPanel, Series, SphereGrid, lines, sc
 use hairis_instruments::report::Drawing;
 use hairis_variants::{AnyBsdf, AnyMaterial};
 
-/// Widths of the bells shown, degrees.
+/// Widths of the bells shown, in degrees.
 const WIDTHS: [f64; 3] = [5.0, 10.0, 20.0];
 
-/// A name, its value at a distance from the centre in units of the width, and its area between plus and minus as many
-/// widths.
+/// Name of a bell, its value at a distance from the centre in units of the width, and its area between plus and minus as many widths.
 type Bell = (&'static str, fn(f64) -> f64, fn(f64) -> f64);
 
 const BELLS: [Bell; 2] = [
@@ -28,7 +27,7 @@ const BELLS: [Bell; 2] = [
     ("Cauchy", |x| 1.0 / (x * x + 1.0), |x| 2.0 * x.atan()),
 ];
 
-/// The bells, each divided by what `scale` gives for it and its width.
+/// Draws the bells, each divided by the result of `scale` for the bell and its width.
 fn bells_over(title: &str, y: &str, scale: fn(&Bell, f64) -> f64) -> String {
     let x = Axis::linear("distance from the centre (°)")
         .range(-90.0, 90.0)
@@ -45,8 +44,8 @@ fn bells_over(title: &str, y: &str, scale: fn(&Bell, f64) -> f64) -> String {
     lines(title, x, Axis::linear(y), &series)
 }
 
-/// Gaussians and Cauchys of the same widths: each of area 1 on `[-pi/2, pi/2]`, the paper's figure 4, then as the
-/// scattering function has them, of peak 1.
+/// Draws Gaussians and Cauchys of the same widths: of area 1 on `[-pi/2, pi/2]` each, as the paper's figure 4, then of peak 1, as the
+/// scattering function has them.
 #[must_use]
 pub fn bells() -> [Drawing; 2] {
     let title = "Gaussian and Cauchy of the same width, area 1";
@@ -76,7 +75,7 @@ pub fn bells() -> [Drawing; 2] {
     ]
 }
 
-/// `S cos theta_i`, the mean of the channels.
+/// Returns `S cos theta_i` as the mean of the channels.
 fn reflected(bsdf: &AnyBsdf, theta: f64, phi: f64) -> f64 {
     let [r, g, b] = bsdf
         .eval(fibre_direction(theta, phi).as_vec3())
@@ -84,16 +83,16 @@ fn reflected(bsdf: &AnyBsdf, theta: f64, phi: f64) -> f64 {
     (r + g + b) / 3.0 * theta.cos()
 }
 
-/// Inclination and azimuth of a direction.
+/// Returns inclination and azimuth of a direction.
 fn angles_of(wi: Vec3) -> [f64; 2] {
     let [u, v, w] = wi.as_dvec3().to_array();
     [u.atan2(v.hypot(w)), w.atan2(v)]
 }
 
-/// The paper's figure 5: where uniform sampling, the mixture and each lobe alone put their samples, over
-/// `S cos theta_i`, seen from the inclination `theta_o` (radians) at azimuth 0.
+/// Draws the paper's figure 5: samples of uniform sampling, of the mixture and of each lobe alone, over `S cos theta_i`, seen from the
+/// inclination `theta_o` (radians) at azimuth 0.
 ///
-/// `xi` are the points of the unit cube, the same ones for all six maps: a Halton sequence, as in the paper.
+/// The six maps share the points `xi` of the unit cube, which are a Halton sequence in the paper.
 #[must_use]
 pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: &[[f32; 3]]) -> Drawing {
     let bsdf = AnyMaterial::from(Material::new(&Published(Gaussian), params))

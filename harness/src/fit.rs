@@ -1,18 +1,18 @@
-//! Parameters of one model whose look is nearest to that of another.
+//! Fit of one model's parameters, so that its look is nearest to that of another.
 //!
 //! # What is minimised
 //!
-//! The distance of `S cos theta_i` of the two models over all directions and some views, per channel, relative to the norm of
-//! the first: in L1 the light that is reflected elsewhere, not at all, or in addition; the same after a blur of
-//! [`SIGMA_DEG`](crate::difference::SIGMA_DEG); in L2 the root mean square, in which peaks count more. Of models of the near field
-//! the mean over the offsets counts. L1 is smoothed near 0, by a hundredth of the mean.
+//! The distance of `S cos theta_i` of the two models over all directions and some views, per channel, relative to the norm of the first. In
+//! L1, the distance is the light that is reflected elsewhere, not at all, or in addition; blurred, it is the same after a blur of
+//! [`SIGMA_DEG`](crate::difference::SIGMA_DEG); in L2, it is the root mean square, in which peaks count more. For near-field models, the
+//! mean over the offsets counts. L1 is smoothed near 0, by a hundredth of the mean.
 //!
 //! # Method
 //!
-//! The sphere of each view is integrated by [`Points`]: half of them are drawn by the first model's sampler and half uniformly, and
-//! weighed by the density of the mixture. L-BFGS-B minimises, with the derivatives of [`hairis_gradients`], within the ranges of
-//! the fields, from several starts. Distances are measured at other [`Points`], of which the optimiser knows nothing. The result
-//! is the nearest, by the true norm, of all ends, starts and [`rules`]: it is never further away than any of them.
+//! The sphere of each view is integrated by [`Points`]: half of them are drawn by the first model's sampler and half uniformly, and weighed
+//! by the density of the mixture. L-BFGS-B minimises, with the derivatives of [`hairis_gradients`], within the ranges of the fields, from
+//! several starts. Distances are measured at other [`Points`], which the optimiser does not use. The result is the nearest, by the true
+//! norm, of all ends, starts and [`rules`], so that it is never further away than any of them.
 
 mod blur;
 mod objective;
@@ -38,7 +38,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use variables::Variables;
 
-/// Norm of the distance.
+/// Norm that measures the distance of two models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Norm {
@@ -51,7 +51,7 @@ pub enum Norm {
 }
 
 impl Norm {
-    /// Name in sentences.
+    /// Returns the name of the norm in sentences.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::L1 => "L1",
@@ -61,27 +61,27 @@ impl Norm {
     }
 }
 
-/// Settings of a fit.
+/// Settings of a fit: norm, views, fixed fields and starts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitConfig {
     /// Norm of the distance.
     pub norm: Norm,
     /// Inclinations of the viewer, rad, within (-pi/2, pi/2).
     pub views: Vec<f64>,
-    /// Weight of each view, above 0. Ratios of weights alone count.
+    /// Weight of each view, above 0. Only ratios of weights count.
     pub weights: Vec<f64>,
-    /// Fields whose values stay those of the start.
+    /// Fields that keep their values of the start.
     pub fixed: Vec<String>,
     /// Number of starts, at least 1.
     pub starts: usize,
     /// Seed of the points and of the starts.
     pub seed: u64,
-    /// Directions per view.
+    /// Number of directions per view.
     pub directions: usize,
 }
 
 impl Default for FitConfig {
-    /// Eight views, each of the same solid angle, with equal weights.
+    /// Returns eight views, each of the same solid angle, with equal weights.
     fn default() -> Self {
         let views: Vec<f64> = (0..8)
             .map(|i| ((f64::from(i) + 0.5) / 4.0 - 1.0).asin())
@@ -99,7 +99,7 @@ impl Default for FitConfig {
 }
 
 impl FitConfig {
-    /// From the inclinations of a grid, which count equally.
+    /// Returns settings with the inclinations of a grid as views, which count equally.
     #[must_use]
     pub fn of_grid(grid: &Grid) -> Self {
         let views = grid.theta_o_deg.iter();
@@ -110,7 +110,7 @@ impl FitConfig {
         }
     }
 
-    /// With as many directions as distances are measured at.
+    /// Returns settings with as many directions as distances are measured at.
     fn finer(&self) -> Self {
         Self {
             directions: 8 * self.directions,
@@ -119,16 +119,16 @@ impl FitConfig {
     }
 }
 
-/// A model with its values.
+/// Model with the values of its fields, whose look is fitted or fitted to.
 #[derive(Clone, Copy, Debug)]
 pub struct Look {
-    /// The model.
+    /// Model that evaluates the look.
     pub model: ModelId,
-    /// Its values.
+    /// Values of the model's fields.
     pub values: Values,
 }
 
-/// A start, and where it ended.
+/// Start of the optimiser, with the end that it led to.
 #[derive(Clone, Copy, Debug)]
 pub struct End {
     /// Values at the start.
@@ -143,26 +143,26 @@ pub struct End {
     pub iterations: u64,
 }
 
-/// Result of a fit.
+/// Result of a fit: the values that were found, and their distance.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// The model that is fitted, with the values that were found.
+    /// Fitted model, with the values that were found.
     pub found: Look,
-    /// Distance of the found values.
+    /// Distance of the values that were found.
     pub distance: f64,
-    /// Difference of that distance from the one at third points: its error.
+    /// Error of the distance, as its difference from the distance at a third set of points.
     pub error: f64,
     /// Distance of the first start.
     pub distance_of_start: f64,
     /// Distance of each of the [`rules`], in their order.
     pub distances_of_rules: Vec<f64>,
-    /// Each start, the first one first.
+    /// Ends of all starts, with the first start first.
     pub ends: Vec<End>,
-    /// Points of all these distances, none of which the optimiser had.
+    /// Points at which all these distances are measured. The optimiser used others.
     pub points: Points,
 }
 
-/// The starts of a fit: the `given` ones, and others whose numbers are up to 30% away from one of those.
+/// Returns the starts of a fit: the `given` ones, and others whose numbers are up to 30% away from one of those.
 fn starts(given: &[Values], config: &FitConfig) -> Vec<Values> {
     let start = |place: usize| {
         if let Some(values) = given.get(place) {
@@ -179,12 +179,12 @@ fn starts(given: &[Values], config: &FitConfig) -> Vec<Values> {
     (0..config.starts).map(start).collect()
 }
 
-/// Fits the model `to` to a look. Starts are the [first](first_start); where `to` has other fields its presets, else the best of
-/// the [`rules`]; and others around those.
+/// Fits the model `to` to a look. Starts are the [first](first_start); the presets of `to` if it has other fields, or else the best of the
+/// [`rules`]; and others around those.
 ///
 /// # Errors
 ///
-/// If a value of `from` is out of its range.
+/// Returns an error if a value of `from` is out of its range.
 pub fn fit(from: &Look, to: ModelId, config: &FitConfig) -> Result<Fit, ParamError> {
     let to = ModelId::find(to.name(), None).unwrap_or(to);
     let points = Points::new(from, to, config, 0)?;

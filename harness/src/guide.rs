@@ -15,7 +15,7 @@
 //! | [`looks`] | How different do the Gaussian and the Cauchy model look? |
 //! | [`machines`] | How does a study continue after a stop, and run on a cluster? |
 
-/// Targets of links in this documentation. They come before the paths that the Markdown files have for readers of the
+/// Defines the targets of links in this documentation. They come before the paths that the Markdown files have for readers of the
 /// repository, and the first definition of a target counts.
 macro_rules! links {
     () => {
@@ -41,7 +41,7 @@ macro_rules! links {
     };
 }
 
-/// Chapters as Markdown files: each module is one of them.
+/// Declares chapters, each of which is a module with a Markdown file.
 macro_rules! chapters {
     ($($chapter:ident)*) => { $(
         #[doc = links!()]

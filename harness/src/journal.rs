@@ -1,8 +1,7 @@
-//! Figures that a run has found so far, as a file: a run that is killed goes on from them.
+//! Figures that a run has found so far, kept in a file so that a killed run continues from them.
 //!
-//! Each line has the bits of some numbers, their key and a checksum. The name of the file has a
-//! digest of everything that the numbers depend on, and its first line spells that out: a run with
-//! other settings has another file.
+//! Each line has the bits of some numbers, their key and a checksum. The name of the file has a digest of everything that the numbers
+//! depend on, and its first line spells that out, so that a run with other settings has another file.
 
 use crate::sealed::{checksum, line, unseal};
 use hairis_instruments::appended::Appended;
@@ -14,7 +13,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
-/// Figures by key. Without a file, those of this run alone are known.
+/// Figures by key, kept in a file if there is one. Without a file, a journal holds no earlier figures.
 #[derive(Debug, Default)]
 pub struct Journal {
     file: Option<Appended>,
@@ -22,15 +21,15 @@ pub struct Journal {
     interrupt: Interrupt,
 }
 
-/// A line of the file.
+/// Line of the file.
 #[derive(Serialize, Deserialize)]
 struct Entry {
     key: String,
-    /// Bits of the numbers.
+    /// Bit patterns of the numbers.
     bits: Vec<u64>,
 }
 
-/// First line of the file.
+/// First line of the file, with the settings of the run.
 #[derive(Serialize)]
 struct Header<'a, S> {
     format: &'static str,
@@ -38,13 +37,11 @@ struct Header<'a, S> {
 }
 
 impl Journal {
-    /// The figures `NAME-DIGEST.part` in a folder, of a run with these settings that `interrupt`
-    /// may end.
+    /// Opens the figures `NAME-DIGEST.part` in a folder, for a run with these settings that `interrupt` may end.
     ///
     /// # Errors
     ///
-    /// [`Error::Output`] if the file cannot be written, [`Error::Part`] if another process is
-    /// writing to it.
+    /// Returns [`Error::Output`] if the file cannot be written, and [`Error::Part`] if another process is writing to it.
     pub fn open(
         dir: &Path,
         name: &str,
@@ -100,19 +97,18 @@ impl Journal {
         })
     }
 
-    /// Whether an earlier run has found the numbers of a key.
+    /// Returns true if an earlier run has found the numbers of a key.
     #[must_use]
     pub fn has(&self, key: &str) -> bool {
         self.found.contains_key(key)
     }
 
-    /// The numbers of a key: those that an earlier run has found, bit for bit, or those that `find`
-    /// gives, which are kept.
+    /// Returns the numbers of a key, bit for bit as an earlier run has found them. If there are none, computes them with `find` and appends
+    /// them to the file, if there is one.
     ///
     /// # Errors
     ///
-    /// Those of `find`; [`Error::Output`] if the numbers cannot be kept; [`Error::Interrupted`]
-    /// after a signal.
+    /// Returns the errors of `find`, [`Error::Output`] if the numbers cannot be kept, and [`Error::Interrupted`] after a signal.
     pub fn numbers<const N: usize, E>(
         &self,
         key: &str,
@@ -140,11 +136,11 @@ impl Journal {
         Ok(numbers)
     }
 
-    /// Ends a run that a signal has asked to end.
+    /// Returns an error if a signal has requested the end of the run, so that its caller stops.
     ///
     /// # Errors
     ///
-    /// [`Error::Interrupted`].
+    /// Returns [`Error::Interrupted`] after a signal.
     pub fn check(&self) -> Result<(), Error> {
         self.interrupt.check(|| {
             let path = self.file.as_ref().map(Appended::path);
@@ -158,7 +154,7 @@ impl Journal {
     /// Removes the file of a run whose results are written.
     pub fn remove(self) {
         if let Some(file) = self.file {
-            // What is gone need not be removed.
+            // An error is ignored, because a file that is gone need not be removed.
             let _ = fs::remove_file(file.path());
         }
     }
@@ -181,7 +177,7 @@ mod tests {
         Journal::open(dir.path(), "claims", &seed, Interrupt::default()).expect("a file")
     }
 
-    /// The numbers, and whether they were found again.
+    /// Returns the numbers, and whether `find` was called.
     fn get(journal: &Journal, key: &str) -> ([u64; 4], bool) {
         let mut is_new = false;
         let find = || {

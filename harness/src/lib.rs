@@ -1,4 +1,4 @@
-//! The harness of `hairis`: the functions of its binary, as a library so that tests can call them.
+//! Harness of `hairis`: the functions of its binary, as a library so that tests can call them.
 
 pub mod agreement;
 pub mod args;
@@ -23,7 +23,7 @@ pub mod subject;
 mod timer;
 pub mod variance;
 
-/// Example of the workspace README.
+/// Example of the workspace README, which is compiled and run as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 #[derive(Debug)]

@@ -1,6 +1,6 @@
-//! The lights that every experiment compares models under, and their names in sentences.
+//! Lights that every experiment compares models under, and their names in sentences.
 //!
-//! Experiments ask for lights by name, or by what they are; no figure depends on how many lights there are.
+//! Experiments select lights by name, or by kind. No figure depends on how many lights there are.
 
 use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::light::{Constant, Environment, Light, Rectangle, Sky, Smooth, Sun};
@@ -32,13 +32,13 @@ impl<'a> From<Option<&'a Environment>> for Lights<'a> {
 }
 
 impl<'a> Lights<'a> {
-    /// Adds lights after all others.
+    /// Returns the same lights with `further` ones after all others.
     #[must_use]
     pub const fn with(self, further: &'a [&'a dyn Light]) -> Self {
         Self { further, ..self }
     }
 
-    /// Every light, in the order of reports.
+    /// Returns every light of the run, in the order of reports.
     #[must_use]
     pub fn all(&self) -> Vec<&'a dyn Light> {
         static SUN: LazyLock<Sun> = LazyLock::new(|| {
@@ -47,35 +47,35 @@ impl<'a> Lights<'a> {
         });
         let mut all: Vec<&dyn Light> = vec![&Constant, &Smooth, &*SUN, &Rectangle];
         all.extend(self.environment.map(|map| map as &dyn Light));
-        // A new light comes here, in a line of its own: streams of random numbers are keyed by place.
+        // Append a new light here, on its own line: streams of random numbers are keyed by place.
         all.extend(self.further);
         all
     }
 
-    /// The environment.
+    /// Returns the environment, if the run has one.
     #[must_use]
     pub const fn environment(&self) -> Option<&'a Environment> {
         self.environment
     }
 
-    /// The environment, if the light is that.
+    /// Returns the environment, if `light` is the environment.
     pub(crate) fn as_environment(&self, light: &dyn Light) -> Option<&'a Environment> {
         self.environment.filter(|map| map.name() == light.name())
     }
 }
 
-/// The light of a name, if it needs no file.
+/// Returns the light of a name, if it needs no file.
 fn find(name: &str) -> Option<&'static dyn Light> {
     let mut all = Lights::default().all().into_iter();
     all.find(|light| light.name() == name)
 }
 
-/// Place of the environment among names of lights: the first that is not the name of a light without a file.
+/// Returns the index of the environment among names of lights: the first name that no light without a file has.
 pub(crate) fn environment(names: &[String]) -> Option<usize> {
     names.iter().position(|name| find(name).is_none())
 }
 
-/// A light's name in a sentence.
+/// Returns a light's name in a sentence.
 pub(crate) fn in_words(name: &str) -> &str {
     match find(name) {
         Some(light) => light.words(),
@@ -97,7 +97,7 @@ mod tests {
     use hairis_instruments::light::{LightSample, Seen8};
     use hairis_instruments::shard::Shard;
 
-    /// A sixth light: a sun elsewhere.
+    /// Sixth light: a sun elsewhere.
     #[derive(Debug)]
     struct Moon(Sun);
 
@@ -131,7 +131,7 @@ mod tests {
         reference_passes: 4,
     };
 
-    /// Results of `of` under the five lights, and under those and the sixth.
+    /// Returns the results of `of` under the five lights, and under the five and the sixth.
     fn without_and_with<T>(of: impl Fn(Lights<'_>) -> T) -> [T; 2] {
         let sky = Sky::default().environment();
         let moon = Moon(Sun::five_degrees(DVec3::new(0.7, 0.7, -0.1)));

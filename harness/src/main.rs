@@ -1,4 +1,4 @@
-//! The command `hairis`; all else is in the library.
+//! Command `hairis`; all of its functions are in the library.
 
 use hairis_harness::args::Args;
 use hairis_harness::cmd;

@@ -1,4 +1,4 @@
-//! Materials that are measured beside the hair of the grid: of any model of the registry, with every sampler of it.
+//! Materials that are measured beside the hair of the grid, of any model of the registry, with each of its samplers.
 
 use crate::efficiency::PHI_O_DEG;
 use crate::lights::Lights;
@@ -30,50 +30,50 @@ use std::path::PathBuf;
 /// Offset of a ray from the fibre's axis, for models that read it.
 const OFFSET: f32 = 0.5;
 
-/// Name of perfect sampling, see [`variance`].
+/// Name of perfect sampling in rows and reports; see [`variance`].
 pub(crate) const PERFECT: &str = "perfect";
 
-/// V below this is rounding of single precision.
+/// Value below which V is only rounding of single precision.
 const NOTHING: f64 = 1e-9;
 
-/// A material with its name in reports.
+/// Material with its name in reports.
 #[derive(Clone, Debug)]
 pub struct NamedMaterial {
-    /// Name in reports.
+    /// Name of the material in reports.
     pub name: String,
-    /// The model, with its first sampler.
+    /// Model of the material, with its first sampler.
     pub model: ModelId,
-    /// Its parameters.
+    /// Parameters of the material.
     pub values: Values,
 }
 
-/// A material as headers and reports have it.
+/// Key of a material, as headers and reports have it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialKey {
-    /// Name in reports.
+    /// Name of the material in reports.
     pub name: String,
-    /// Name of the model.
+    /// Name of the model in the registry.
     pub model: String,
-    /// Samplers, in the order of the rows.
+    /// Names of the samplers, in the order of the rows.
     pub samplers: Vec<String>,
     /// Parameters, as `hairis eval` reads them.
     pub params: Value,
 }
 
 impl MaterialKey {
-    /// Samplers and perfect sampling, in the order of the rows.
+    /// Returns the names of the samplers and of perfect sampling, in the order of the rows.
     pub(crate) fn strategies(&self) -> impl Iterator<Item = &str> {
         let samplers = self.samplers.iter().map(String::as_str);
         samplers.chain([PERFECT])
     }
 }
 
-/// The first entry of a model's name.
+/// Returns the first entry of a model's name.
 ///
 /// # Errors
 ///
-/// [`Error::Usage`] if there is no such model.
+/// Returns [`Error::Usage`], which names `flag`, if there is no such model.
 pub(crate) fn find_model(flag: &str, name: &str) -> Result<ModelId, Error> {
     ModelId::find(name, None).ok_or_else(|| {
         let names: Vec<&str> = ModelId::defaults_of_names().map(ModelId::name).collect();
@@ -84,11 +84,11 @@ pub(crate) fn find_model(flag: &str, name: &str) -> Result<ModelId, Error> {
     })
 }
 
-/// Materials by the names of models and by files. A model stands for each of its presets.
+/// Returns the materials that names of models and files stand for. A model stands for each of its presets.
 ///
 /// # Errors
 ///
-/// [`Error::Usage`] if there is no such model, or a file cannot be read or has no legal material.
+/// Returns [`Error::Usage`] if there is no such model, or if a file cannot be read or has no legal material.
 pub fn of_flags(models: &[String], paths: &[PathBuf]) -> Result<Vec<NamedMaterial>, Error> {
     let mut all: Vec<(String, ModelId, Values)> = Vec::new();
     for name in models {
@@ -115,7 +115,7 @@ pub fn of_flags(models: &[String], paths: &[PathBuf]) -> Result<Vec<NamedMateria
 }
 
 impl NamedMaterial {
-    /// Its name, model and samplers.
+    /// Returns the material's name, model, samplers and parameters.
     #[must_use]
     pub fn key(&self) -> MaterialKey {
         let samplers = RaySubject::of_model(self.model);
@@ -127,11 +127,11 @@ impl NamedMaterial {
         }
     }
 
-    /// The material of a key.
+    /// Returns the material of a key, the inverse of [`key`](Self::key).
     ///
     /// # Errors
     ///
-    /// The reason why this program has no such material.
+    /// Returns the reason, in words, if this program has no such material.
     pub fn of_key(key: &MaterialKey) -> Result<Self, String> {
         let text = json!({ "model": key.model, "params": key.params }).to_string();
         let read = MaterialSpec::parse_all(&text)?;
@@ -155,12 +155,12 @@ impl NamedMaterial {
         stream_id(&text.bytes().map(u64::from).collect::<Vec<_>>())
     }
 
-    /// The figures from an inclination: samplers outermost, uniform directions first, then lights; after them those of perfect
+    /// Measures the figures from an inclination: samplers outermost, uniform directions first, then lights; after them those of perfect
     /// sampling, by light.
     ///
     /// # Errors
     ///
-    /// The material's.
+    /// Returns an error if the material's parameters are rejected.
     pub(crate) fn measure(
         &self,
         seed: u64,
@@ -171,7 +171,7 @@ impl NamedMaterial {
         let hit = Hit::new(viewer(theta_o_deg), OFFSET);
         let samplers: Vec<RaySubject> = RaySubject::of_model(self.model).collect();
         let source = samplers.iter().position(|of| of.sampler() == SOURCE.name());
-        // A model without that sampler: its first one, after uniform directions.
+        // A model without that sampler uses its first one, which comes after uniform directions.
         let source = source.unwrap_or(1);
         let subject = |(place, of): (usize, &RaySubject)| {
             Ok(Subject {
@@ -193,7 +193,7 @@ impl NamedMaterial {
     ///
     /// # Errors
     ///
-    /// The material's.
+    /// Returns an error if the material's parameters are rejected.
     pub(crate) fn set_bounds(
         &self,
         theta_o_deg: f64,
@@ -216,7 +216,7 @@ fn viewer(theta_o_deg: f64) -> Vec3 {
     fibre_direction(theta_o_deg.to_radians(), PHI_O_DEG.to_radians()).as_vec3()
 }
 
-/// A row: one sampler of a material under one light, from one inclination.
+/// Row of results: one sampler of a material under one light, from one inclination.
 #[derive(Clone, Copy)]
 pub(crate) struct MaterialRow<'a> {
     pub(crate) material: &'a MaterialKey,
@@ -227,13 +227,13 @@ pub(crate) struct MaterialRow<'a> {
 }
 
 impl<'a> MaterialRow<'a> {
-    /// Material, sampler and light.
+    /// Returns the names of material, sampler and light.
     fn key(&self) -> [&'a str; 3] {
         [&self.material.name, self.sampler, self.light]
     }
 }
 
-/// The rows of a material from an inclination, given its figures in the order of [`NamedMaterial::measure`].
+/// Returns the rows of a material from an inclination, given its figures in the order of [`NamedMaterial::measure`].
 pub(crate) fn rows<'a>(
     material: &'a MaterialKey,
     lights: &'a [String],
@@ -251,7 +251,7 @@ pub(crate) fn rows<'a>(
     })
 }
 
-/// The rows as a table: `material`, `model`, `theta_o_deg`, `sampler` and `light`, then the figures of a study.
+/// Returns the rows as columns: `material`, `model`, `theta_o_deg`, `sampler` and `light`, then the figures of a study.
 pub(crate) fn columns(rows: &[MaterialRow<'_>]) -> Columns {
     let text = |of: fn(&MaterialRow<'_>) -> String| rows.iter().map(of);
     let columns = Columns::default()
@@ -266,7 +266,7 @@ pub(crate) fn columns(rows: &[MaterialRow<'_>]) -> Columns {
     )
 }
 
-/// The rows of each material, sampler and light, in the order of the first of each.
+/// Groups the rows by material, sampler and light, in the order of the first row of each group.
 fn by_estimator<'a>(rows: &[MaterialRow<'a>]) -> Vec<Vec<MaterialRow<'a>>> {
     let mut groups: Vec<Vec<MaterialRow<'a>>> = Vec::new();
     for row in rows {
@@ -278,8 +278,8 @@ fn by_estimator<'a>(rows: &[MaterialRow<'a>]) -> Vec<Vec<MaterialRow<'a>>> {
     groups
 }
 
-/// Geometric mean of a figure over some rows. Not a number where one of them is 0 or hardly known, as V of a sampler that is perfect
-/// under constant light.
+/// Returns the geometric mean of a figure over some rows. The mean is NaN if any of them is 0, as V of a perfect sampler under constant
+/// light, or too uncertain.
 fn mean(rows: &[MaterialRow<'_>], figure: &dyn Fn(&Measured) -> Estimate) -> Estimate {
     let figures: Vec<Estimate> = rows.iter().map(|row| figure(row.measured)).collect();
     let is_known =
@@ -291,7 +291,7 @@ fn mean(rows: &[MaterialRow<'_>], figure: &dyn Fn(&Measured) -> Estimate) -> Est
     }
 }
 
-/// V of every sampler of every material, geometric means over the inclinations.
+/// Returns the table of V of every sampler of every material, as geometric means over the inclinations.
 pub(crate) fn table(rows: &[MaterialRow<'_>]) -> Table {
     let mut table = Table::new("V of one sample of other materials")
         .texts(["material", "model", "sampler", "light"])
@@ -325,7 +325,7 @@ pub(crate) fn table(rows: &[MaterialRow<'_>]) -> Table {
     )
 }
 
-/// A line for each figure that cannot be right, by the rules of a study.
+/// Returns a line for each figure that cannot be right, by the rules of a study.
 pub(crate) fn failures(rows: &[MaterialRow<'_>]) -> Vec<String> {
     let checked = rows.iter().map(|row| {
         let [name, sampler, light] = row.key();
@@ -339,10 +339,10 @@ pub(crate) fn failures(rows: &[MaterialRow<'_>]) -> Vec<String> {
     check::failures(&checked.collect::<Vec<_>>())
 }
 
-/// Figures of a material from an inclination.
+/// Figures of a material, with each of its samplers under each light, from one inclination.
 #[derive(Clone, Debug, Serialize)]
 pub struct MaterialPose {
-    /// The material.
+    /// Name, model, samplers and parameters of the material.
     pub material: MaterialKey,
     /// Inclination of the viewer, in degrees.
     pub theta_o_deg: f64,
@@ -359,7 +359,7 @@ struct MaterialEntry {
 }
 
 impl MaterialPose {
-    /// Its rows.
+    /// Returns the rows of the material from this inclination.
     pub(crate) fn rows(&self) -> impl Iterator<Item = MaterialRow<'_>> {
         self.rows.iter().map(|row| MaterialRow {
             material: &self.material,
@@ -371,11 +371,11 @@ impl MaterialPose {
     }
 }
 
-/// Measures materials from some inclinations, on all cores.
+/// Measures materials from some inclinations, on all cores. Workers call `progress` with the number of poses done and of all poses.
 ///
 /// # Errors
 ///
-/// The materials'.
+/// Returns an error if the parameters of a material are rejected.
 pub fn run(
     materials: &[NamedMaterial],
     seed: u64,

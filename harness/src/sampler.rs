@@ -1,6 +1,6 @@
-//! The samplers of each model that `compare` and `study` measure.
+//! Samplers of each model that `compare` and `study` measure.
 //!
-//! To add one, add a variant of [`Sampler`] with its arms in the methods and in `weight_bound`.
+//! To add a sampler, add a variant of [`Sampler`] with its arms in the methods and in `weight_bound`.
 
 use crate::subject::ModelKind;
 use core::f32::consts::{PI, TAU};
@@ -11,25 +11,25 @@ use hairis_variants::{AnyBsdf, AnyMaterial, ModelId, Parameters as _};
 use serde::Serialize;
 use wide::f32x8;
 
-/// Sampler of directions.
+/// Sampler of directions, by which `compare` and `study` measure a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sampler {
-    /// Uniformly over the sphere.
+    /// Uniform directions over the sphere.
     Uniform,
-    /// By the published sampler.
+    /// Published sampler.
     Published,
-    /// By the sampler matched to the model, with nine bands.
+    /// Sampler matched to the model, with nine bands.
     Matched,
-    /// With five: its cheapest.
+    /// Matched sampler with five bands, the cheapest.
     #[serde(rename = "matched-5")]
     Matched5,
-    /// With twenty-five: its least variance.
+    /// Matched sampler with twenty-five bands, of the least variance.
     #[serde(rename = "matched-25")]
     Matched25,
 }
 
-/// Number of samplers of the build: two of them come with the feature `every-sampler`.
+/// Number of samplers of the build. Two of them come with the feature `every-sampler`.
 const COUNT: usize = match ModelId::find("gaussian", Some("matched-25")) {
     Some(_) => 5,
     None => 3,
@@ -54,7 +54,7 @@ impl Sampler {
         all
     };
 
-    /// Name in reports and in rows.
+    /// Returns the name of the sampler in reports and in rows.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Uniform => "uniform",
@@ -65,7 +65,7 @@ impl Sampler {
         }
     }
 
-    /// Uniform numbers per sample.
+    /// Returns the number of uniform numbers per sample.
     pub(crate) const fn dims(self) -> usize {
         match self {
             Self::Uniform => 2,
@@ -73,7 +73,7 @@ impl Sampler {
         }
     }
 
-    /// Bands of a sampler that is matched to the model.
+    /// Returns the number of bands of a sampler that is matched to the model.
     pub(crate) const fn bands(self) -> Option<usize> {
         match self {
             Self::Uniform | Self::Published => None,
@@ -83,12 +83,12 @@ impl Sampler {
         }
     }
 
-    /// Place among the streams of random numbers, by the number of bands.
+    /// Returns the sampler's number among the streams of random numbers, ordered by the number of bands.
     pub(crate) const fn index(self) -> u64 {
         self.color() as u64
     }
 
-    /// Number of its colour, the same in every chart of every report.
+    /// Returns the number of the sampler's colour, the same in every chart of every report.
     pub(crate) const fn color(self) -> usize {
         match self {
             Self::Uniform => 0,
@@ -100,10 +100,10 @@ impl Sampler {
     }
 }
 
-/// A proven bound on the mean of RGB of every weight `S cos theta_i / pdf` seen from `theta_o`, where there is one.
+/// Returns a proven bound on the mean of RGB of every weight `S cos theta_i / pdf` seen from `theta_o`, if there is one.
 ///
-/// - `uniform`: the lobes have peaks of 1, and `cos theta_i / cos^2 theta_d` is at most `1 / cos theta_o`, which it
-///   reaches at `theta_i = -theta_o`.
+/// - `uniform`: the lobes have peaks of 1, and `cos theta_i / cos^2 theta_d` is at most `1 / cos theta_o`, which it reaches at
+///   `theta_i = -theta_o`.
 /// - `published`: none in closed form. Its glints end at `|phi| = pi/2`; other lobes sample their tails beyond it.
 /// - `matched`: the integral of all lobes, times the largest ratio of W to its constant in a band.
 pub(crate) fn weight_bound(
@@ -129,7 +129,7 @@ pub(crate) fn weight_bound(
 /// Density of a uniform direction, per steradian.
 pub(crate) const UNIFORM_PDF: f32 = 0.25 / PI;
 
-/// A shading point with one of the samplers.
+/// Shading point with one of the samplers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scatter {
     bsdf: AnyBsdf,
@@ -137,7 +137,7 @@ pub(crate) struct Scatter {
 }
 
 impl Scatter {
-    /// This hair, seen from `wo`.
+    /// Prepares this hair, seen from `wo`.
     pub(crate) fn new(model: ModelKind, sampler: Sampler, params: &HairParams, wo: Vec3) -> Self {
         Self {
             bsdf: material(model, sampler, params).prepare(wo),
@@ -145,7 +145,7 @@ impl Scatter {
         }
     }
 
-    /// A prepared shading point, with the model's own sampler or with uniform directions.
+    /// Wraps a prepared shading point, with the model's own sampler or with uniform directions.
     pub(crate) const fn at(bsdf: AnyBsdf, is_uniform: bool) -> Self {
         Self { bsdf, is_uniform }
     }
@@ -172,29 +172,29 @@ impl Scatter {
     }
 }
 
-/// The material of this hair, with the model's sampler, if it is one of the model.
+/// Returns the material of this hair, with the sampler if it is one of the model.
 ///
 /// # Panics
 ///
-/// Never: every sampler of the models is registered, and their parameters are those of hair.
+/// Never panics, because every sampler of the models is registered, and their parameters are those of hair.
 pub(crate) fn material(model: ModelKind, sampler: Sampler, params: &HairParams) -> AnyMaterial {
     let word = sampler.bands().map(|_| sampler.name());
     let id = ModelId::find(model.name(), word).expect("a registered sampler");
     id.material(&params.values()).expect("parameters of hair")
 }
 
-/// Eight directions uniform on the sphere, from the last two of three numbers.
+/// Returns eight directions uniform on the sphere, from the last two of three numbers.
 #[inline]
 pub(crate) fn uniform8(xi: &[f32x8; 3]) -> Vec3x8 {
     let one = f32x8::splat(1.0);
     let u = one - (xi[1] + xi[1]);
-    // (1 - u)(1 + u) by its factors: no cancellation near the poles.
+    // As the product (1 - u)(1 + u), so that nothing cancels near the poles.
     let r = (f32x8::splat(4.0) * xi[1] * (one - xi[1])).sqrt();
     let (sin_phi, cos_phi) = (xi[2] * f32x8::splat(TAU)).sin_cos();
     Vec3x8::new(u, r * cos_phi, r * sin_phi)
 }
 
-/// The samples of uniform directions that evaluate to `eval`.
+/// Returns the samples of uniform directions that evaluate to `eval`.
 #[inline]
 pub(crate) fn uniform_sample8(wi: Vec3x8, eval: Eval8) -> Sample8 {
     let factor = cosine(&wi) * f32x8::splat(1.0 / UNIFORM_PDF);

@@ -1,13 +1,12 @@
 //! Time of each operation: the formulas in scalar code, the kernel on one lane, and on eight lanes of every
 //! instruction set of this CPU, interleaved in one run.
 //!
-//! The formulas are timed twice: on the libm crate, and on the methods of std, which are the platform's library. Ratios are to
-//! the faster.
+//! The formulas are timed twice: on the libm crate, and on the methods of std, which are the platform's library. Ratios are to the faster
+//! of the two.
 //!
-//! A round times every contender of every operation once, under the same state of the machine; a ratio is formed
-//! within a round, and the report has the median over the rounds with its quartiles. Directions and numbers are
-//! drawn beforehand and stay in the second-level cache. The answers of every contender are compared with the reference
-//! in `f64` after the timing.
+//! A round times every contender of every operation once, under the same state of the machine. A ratio is formed within a round, and the
+//! report has the median over the rounds with its quartiles. Directions and numbers are drawn beforehand and stay in the second-level
+//! cache. After the timing, the answers of every contender are compared with the reference in `f64`.
 
 mod threads;
 
@@ -25,17 +24,16 @@ use serde::Serialize;
 use std::time::Instant;
 pub use threads::ThreadsResult;
 
-/// Rounds below which no figure is given, however slow the machine.
+/// Least number of rounds, however slow the machine.
 const MIN_ROUNDS: usize = 15;
-/// Shortest time a stretch may take, ns, timed or not: a thousand times the clock's own, and longer than the upper
-/// halves of the vector units of many CPUs take to wake after code that does without (10 to 20 us at a quarter of
-/// their speed).
+/// Shortest time of a stretch, ns, timed or not: a thousand times the clock's own. It is also longer than the upper halves of the vector
+/// units of many CPUs take to wake after code without them (10 to 20 us at a quarter of their speed).
 const MIN_STRETCH: f64 = 5e4;
-/// Share of wrong answers from which a contender fails: samples next to the boundary of two lobes may choose either,
-/// and the `f32` reference loses digits near the axis; a wrong lane is an eighth.
+/// Share of wrong answers from which a contender fails. Samples next to the boundary of two lobes may choose either, and the `f32`
+/// reference loses digits near the axis; a wrong lane is an eighth.
 const MAX_WRONG: f64 = 0.01;
 
-/// Duration and inputs of a measurement.
+/// Duration of a measurement, and the seed of its inputs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SpeedConfig {
     /// Time for all rounds together, s. At least fifteen rounds are made even if they take longer.
@@ -45,7 +43,7 @@ pub struct SpeedConfig {
 }
 
 impl SpeedConfig {
-    /// About twenty seconds; if `quick`, four.
+    /// Returns settings for about twenty seconds, or for four if `quick`.
     pub(crate) const fn new(seed: u64, quick: bool) -> Self {
         Self {
             seconds: if quick { 4.0 } else { 20.0 },
@@ -54,58 +52,58 @@ impl SpeedConfig {
     }
 }
 
-/// One contender in one operation: a row of the table.
+/// Time of one contender in one operation, which is a row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SpeedResult {
-    /// The operation.
+    /// Operation that was timed.
     pub op: TimedOp,
-    /// The model.
+    /// Name of the model.
     pub model: &'static str,
-    /// `reference`, `one lane`, or eight lanes, one of the kinds of packets and slices.
+    /// Name of the contender: `reference`, `one lane`, or eight lanes, one of the kinds of packets and slices.
     pub contender: &'static str,
     /// Instruction set of the lanes; `scalar` for one lane, with the library that the reference takes its functions from.
     pub level: &'static str,
     /// Number of rounds.
     pub rounds: usize,
-    /// Calls over all the inputs in each timed stretch.
+    /// Number of calls over all the inputs in each timed stretch.
     pub passes: u32,
-    /// Time for one direction (one shading point where each direction has its own), ns: median over the rounds.
+    /// Time for one direction (or one shading point if each direction has its own), ns: median over the rounds.
     pub ns: f64,
-    /// First quartile of the same.
+    /// First quartile of the time over the rounds, ns.
     pub ns_q1: f64,
-    /// Third quartile of the same.
+    /// Third quartile of the time over the rounds, ns.
     pub ns_q3: f64,
     /// Speed-up over the faster reference: median over the rounds of the ratio within a round.
     pub ratio: f64,
-    /// First quartile of the same.
+    /// First quartile of the speed-up over the rounds.
     pub ratio_q1: f64,
-    /// Third quartile of the same.
+    /// Third quartile of the speed-up over the rounds.
     pub ratio_q3: f64,
-    /// Share of the answers further than 1e-3 (relative, or rad) from the reference's in `f64`.
+    /// Share of the answers further than 1e-3 (relative, or rad) from the `f64` reference.
     pub wrong_share: f64,
-    /// Whether the answers are right, but for one in a hundred. A row that did not pass is no result.
+    /// Whether the answers are right, except for one in a hundred. Times of a row that did not pass are not valid results.
     pub passed: bool,
 }
 
-/// The table, and what it was measured with.
+/// Times of all contenders, with the settings and instruction sets of the measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SpeedReport {
-    /// The requested settings.
+    /// Settings that were requested.
     pub config: SpeedConfig,
-    /// Directions a pass.
+    /// Number of directions per pass.
     pub directions: usize,
     /// Instruction set that the program was compiled for.
     pub compiled_level: &'static str,
     /// Default instruction set of eight lanes.
     pub detected_level: &'static str,
-    /// By model, operation and contender; the two references lead each block.
+    /// Rows by model, operation and contender; the two references come first in each block.
     pub rows: Vec<SpeedResult>,
-    /// Slices on several threads.
+    /// Throughput of slices on several threads.
     pub threads: Vec<ThreadsResult>,
 }
 
 impl SpeedReport {
-    /// The row of a contender, by operation, model, name and level.
+    /// Returns the row of a contender, by operation, model, name and level.
     #[must_use]
     pub fn row(
         &self,
@@ -120,13 +118,14 @@ impl SpeedReport {
     }
 }
 
-/// Measures all operations on every model, with its first sampler. `progress` is called with the share done, from 0 to 1, after every round.
+/// Measures all operations on every model, with its first sampler. After every round, `progress` is called with the share done, from 0 to
+/// 1.
 ///
-/// Nothing else should run on the machine meanwhile, and not on other threads of this program.
+/// Nothing else should run on the machine meanwhile, including other threads of this program.
 ///
 /// # Errors
 ///
-/// Never: the parameters that are drawn are within the ranges accepted.
+/// Returns an error only if drawn parameters are rejected, which does not happen because all are drawn within the accepted ranges.
 pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedReport, ParamError> {
     let mut cells = Vec::new();
     for model in ModelId::defaults_of_names() {
@@ -146,7 +145,7 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
         }
         cells.iter_mut().for_each(|cell| cell.round(round));
     }
-    // Of its parameters threads use none: directions and numbers alone.
+    // The threads use directions and numbers only, and none of these parameters.
     let inputs = draw(ModelId::Gaussian, config.seed);
     let mut threads = Vec::new();
     for model in ModelId::defaults_of_names() {
@@ -162,7 +161,7 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
     })
 }
 
-/// Uniform directions and numbers; the first parameters are the default, the other seven are drawn.
+/// Draws uniform directions and numbers. The first parameters are the default, and the other seven are drawn.
 fn draw(model: ModelId, seed: u64) -> TimedInputs {
     let (mut from, default) = (
         Independent::new(seed, stream_id(&[0x5eed])),
@@ -195,18 +194,18 @@ fn draw(model: ModelId, seed: u64) -> TimedInputs {
     }
 }
 
-/// The times of a contender.
+/// Times of a contender, by round.
 struct Times {
-    /// Passes in a stretch.
+    /// Number of passes in a stretch.
     passes: u32,
     /// Time per direction in each round, ns.
     ns: Vec<f64>,
 }
 
-/// One operation of one model: a table's block of rows.
+/// Cell of the measurement: one operation of one model, which is a block of rows in the table.
 struct SpeedCell {
     contest: Contest,
-    /// By contender.
+    /// Times by contender, in the order of the contest.
     times: Vec<Times>,
 }
 
@@ -238,7 +237,7 @@ impl SpeedCell {
         for k in turns(count, round) {
             let (task, Times { passes, ns }) =
                 (&mut self.contest.contenders[k].task, &mut self.times[k]);
-            // One stretch untimed: the one before was another's, and left the caches its own and the vector units asleep.
+            // One stretch is not timed, because the contender before left its own data in the caches and the vector units asleep.
             stretch(&mut **task, *passes);
             let mut time = 0.0;
             deeper(round % FRAMES, &mut || time = stretch(&mut **task, *passes));
@@ -257,7 +256,7 @@ impl SpeedCell {
                 },
             times,
         } = self;
-        // The two references lead; ratios are to the faster of them.
+        // The two references come first; ratios are to the faster of them.
         let [libm, std] = [0, 1].map(|reference: usize| times[reference].ns.clone());
         let fastest = if quartiles(&std)[1] < quartiles(&libm)[1] {
             std
@@ -294,14 +293,14 @@ impl SpeedCell {
     }
 }
 
-/// Frames of [`deeper`] to about a page.
+/// Number of frames of [`deeper`] that fill about a page.
 const FRAMES: usize = 23;
 
 /// Calls `f` from so many frames further down the stack.
 ///
-/// Results are left on the stack. Where their addresses agree with those of a shading point's constants in the lower
-/// twelve bits, which is a matter of luck, each call waits for the stores of the one before, and takes up to twice as
-/// long: rounds at different depths leave such places to the tail of the distribution.
+/// Results are left on the stack. If their addresses happen to agree with those of a shading point's constants in the lower twelve bits,
+/// each call waits for the stores of the one before and takes up to twice as long. With rounds at different depths, such addresses affect
+/// only the tail of the distribution.
 #[inline(never)]
 fn deeper(depth: usize, f: &mut dyn FnMut()) {
     let frame = black_box([0_u8; 144]);

@@ -1,33 +1,31 @@
-//! The study: both models, every sampler and every light over the whole parameter grid.
+//! Study of both models with every sampler under every light, over the whole parameter grid.
 //!
 //! # What is measured
 //!
-//! For each cell of the [`Grid`], model, [`Sampler`] and light: the mean of `L S cos theta_i / pdf` (the mean of its RGB,
-//! as in [`efficiency`](crate::efficiency)), its relative variance V per sample, the effective sample size, the samples
-//! to an error of 1%, the largest weight and contribution, and the Kullback-Leibler divergence of the density from the
-//! normalised integrand, with standard errors. [`Study::columns`](output::Study::columns) lists them.
+//! For each cell of the [`Grid`], model, [`Sampler`] and light, the study measures the mean of `L S cos theta_i / pdf` (the mean of its
+//! RGB, as in [`efficiency`](crate::efficiency)), its relative variance V per sample, and the Kullback-Leibler divergence of the density
+//! from the normalised integrand, with standard errors. Further figures are the effective sample size, the samples to an error of 1%, and
+//! the largest weight and contribution. [`Study::columns`](output::Study::columns) lists them.
 //!
-//! The sampler `perfect` is not runnable: directions of a density proportional to the mean of RGB of `S cos theta_i`, the
-//! limit of samplers of the hair that ignore the light. The V that is left belongs to the light.
-//! It is estimated from directions that are drawn anyway: its two integrals from those of the matched sampler of most
-//! bands, whose weights are bounded and vary least, and of the light; the albedo as the mean of the same weights, whose errors cancel
-//! against those of the integrals, so that V under constant light is 0.
+//! The sampler `perfect` is not runnable: its directions have a density proportional to the mean of RGB of `S cos theta_i`, the limit of
+//! samplers of the hair that ignore the light. The V that is left belongs to the light. It is estimated from directions that are drawn
+//! anyway. Its two integrals come from directions of the light and of the matched sampler of most bands, whose weights are bounded and vary
+//! least. The albedo is the mean of the same weights, whose errors cancel against those of the integrals, so that V under constant light is
+//! 0.
 //!
-//! V and the divergence are integrals. They are estimated with directions of the sampler and, for lights that do not cover
-//! the sphere, of the light: the figures are those of the sampler alone, but no small light has to be hit by luck. With
-//! directions of the sampler alone, a V of 1000 has an error of 10% after some hundred thousand samples, and that error is
-//! underestimated.
+//! V and the divergence are integrals. They are estimated with directions of the sampler and, for lights that do not cover the sphere, of
+//! the light. The figures are those of the sampler alone, but no small light has to be hit by chance. With directions of the sampler alone,
+//! a V of 1000 has an error of 10% after some hundred thousand samples, and that error is underestimated.
 //!
-//! Rays of direct light are measured as [`rays`](crate::rays) does, from candidates of streams of their own: V of one ray by
-//! one-sample MIS and from 4 + 4 and 8 + 8 candidates.
+//! Rays of direct light are measured as in [`rays`](crate::rays), from candidates of streams of their own: V of one ray by one-sample MIS
+//! and from 4 + 4 and 8 + 8 candidates.
 //!
 //! # Determinism
 //!
-//! The rows depend on the [`Plan`], on the build and on its instruction set, and on nothing else: each cell draws from
-//! streams of its own and is computed by one thread. Finished cells are kept in a part file, see [`part`], so that a run
-//! that was stopped goes on where it was, and so that many processes can share the work. Times are measured apart, by
-//! the process that writes the tables: of a sample, of a look-up of each light, and of a ray without its tracing. The environment's needs its file, which
-//! `hairis merge` takes as an option.
+//! The rows depend only on the [`Plan`], on the build and on its instruction set: each cell draws from streams of its own and is computed
+//! by one thread. Finished cells are kept in a part file, see [`part`], so that a stopped run continues and many processes can share the
+//! work. Times are measured separately, by the process that writes the tables: of a sample, of a look-up of each light, and of a ray
+//! without its tracing. The environment's times need its file, which `hairis merge` takes as an option.
 //!
 //! # Adding a sampler
 //!
@@ -67,33 +65,33 @@ use hairis_instruments::stats::Estimate;
 use part::{Finished, Header};
 use rayon::prelude::*;
 
-/// Settings of a study.
+/// Settings of a study, on which all of its rows depend.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan<'a> {
     /// Seed of every stream.
     pub seed: u64,
-    /// Whether it is the short run.
+    /// Whether this is the short run.
     pub quick: bool,
-    /// The lights.
+    /// Lights that every cell is measured under.
     pub lights: Lights<'a>,
     /// Materials beside the hair of the grid, seen from its inclinations.
     pub materials: &'a [NamedMaterial],
 }
 
 impl Plan<'_> {
-    /// The cells.
+    /// Returns the grid of the run, short or whole.
     #[must_use]
     pub const fn grid(&self) -> Grid {
         Grid::of(self.quick)
     }
 
-    /// Numbers of samples per cell.
+    /// Returns the numbers of samples per cell.
     #[must_use]
     pub const fn budget(&self) -> SampleBudget {
         SampleBudget::of(self.quick)
     }
 
-    /// Header of the part file of `shard`.
+    /// Returns the header of the part file of `shard`, with everything that the rows depend on.
     #[must_use]
     pub fn header(&self, shard: Shard) -> Header {
         let machine = machine!();
@@ -142,15 +140,15 @@ impl Plan<'_> {
     }
 }
 
-/// Work with a number: a cell of the grid, then materials, each from the inclinations of the grid in turn.
+/// Unit of work: a cell of the grid, or a material seen from one inclination. Materials come after all cells.
 pub(crate) enum Place {
     Cell(Cell),
-    /// Place of the material, and inclination of the viewer in degrees.
+    /// Index of the material, and inclination of the viewer in degrees.
     Material(usize, f64),
 }
 
 impl Place {
-    /// The work of a number.
+    /// Returns the work of an index: a cell of the grid, or else a material, each from the inclinations of the grid in turn.
     pub(crate) fn of(index: usize, grid: &Grid) -> Self {
         let Some(place) = index.checked_sub(grid.len()) else {
             return Self::Cell(grid.cell(index));
@@ -165,7 +163,7 @@ impl Place {
 ///
 /// # Errors
 ///
-/// The first that `keep` gave, or the hair's: the cells in work are then finished, and no others begun.
+/// Returns the first error of `keep`, or an error if hair is rejected. The cells in work are then finished, and no others begun.
 pub fn run(
     plan: &Plan<'_>,
     todo: &[usize],
@@ -184,7 +182,7 @@ pub fn run(
     })
 }
 
-/// V on a model under a light.
+/// V of a sampler on a model under a light.
 #[derive(Clone, Debug)]
 pub(crate) struct Variance {
     pub(crate) model: ModelKind,
@@ -193,11 +191,11 @@ pub(crate) struct Variance {
     pub(crate) v: Estimate,
 }
 
-/// V of some samplers in one cell. With the budget of the plan, the figures of [`run`].
+/// Measures V of some samplers in one cell. With the budget of the plan, the figures are those of [`run`].
 ///
 /// # Errors
 ///
-/// The hair's.
+/// Returns an error if the hair of the cell is rejected.
 pub(crate) fn variances(
     plan: &Plan<'_>,
     budget: SampleBudget,

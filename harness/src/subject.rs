@@ -1,4 +1,4 @@
-//! The two models of hair that the experiments compare, and the parameters that comparisons draw.
+//! Subjects of the experiments: the two models of hair that they compare, and the parameters that comparisons draw.
 
 use hairis::{HairParams, ParamError};
 use hairis_instruments::sequence::Independent;
@@ -6,26 +6,26 @@ use hairis_reference::{HairFormulas, Shape};
 use hairis_variants::{Draw, Kind, ModelId, Parameters as _, Values};
 use serde::Serialize;
 
-/// The models compared.
+/// Hair model of the experiments, which differ in the bell of their lobes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ModelKind {
-    /// The published model.
+    /// Published model, whose lobes are Gaussian.
     Gaussian,
-    /// The all-Cauchy variant with the same widths.
+    /// All-Cauchy variant with the same widths.
     Cauchy,
 }
 
 impl ModelKind {
-    /// Every model, in the order of reports.
+    /// Both models, in the order of reports.
     pub const ALL: [Self; 2] = [Self::Gaussian, Self::Cauchy];
 
-    /// Name in reports.
+    /// Returns the name of the model in reports.
     pub(crate) const fn name(self) -> &'static str {
         self.id().name()
     }
 
-    /// The model with the published sampler.
+    /// Returns the registry's entry of the model with the published sampler.
     pub(crate) const fn id(self) -> ModelId {
         match self {
             Self::Gaussian => ModelId::Gaussian,
@@ -33,7 +33,7 @@ impl ModelKind {
         }
     }
 
-    /// Name in titles and sentences.
+    /// Returns the name of the model in titles and sentences.
     pub(crate) const fn title(self) -> &'static str {
         match self {
             Self::Gaussian => "Gaussian",
@@ -41,7 +41,7 @@ impl ModelKind {
         }
     }
 
-    /// Its bell in the reference.
+    /// Returns the model's bell in the reference.
     pub(crate) const fn shape(self) -> Shape {
         match self {
             Self::Gaussian => Shape::Gaussian,
@@ -49,7 +49,7 @@ impl ModelKind {
         }
     }
 
-    /// Its formulas with the matched sampler of so many bands, or with the published one.
+    /// Returns the formulas of the model with the matched sampler of so many bands, or with the published one.
     pub(crate) const fn formulas(self, bands: Option<usize>) -> HairFormulas {
         HairFormulas {
             shape: self.shape(),
@@ -58,13 +58,13 @@ impl ModelKind {
         }
     }
 
-    /// Place among the streams of random numbers.
+    /// Returns the model's number among the streams of random numbers.
     pub(crate) const fn index(self) -> u64 {
         self as u64
     }
 }
 
-/// Random values of every field that has a range, and a random word of every field of words; the others stay.
+/// Draws random values for every field that has a range, and a random word for every field of words. Other fields keep their values.
 #[must_use]
 pub fn random(mut values: Values, xi: &mut Independent) -> Values {
     for late in [false, true] {
@@ -96,12 +96,12 @@ pub fn random(mut values: Values, xi: &mut Independent) -> Values {
     values
 }
 
-/// Hair drawn over the range of the everyday: widths log-uniform in 1 to 30 degrees, shifts uniform within 15 degrees,
-/// glints at 10 to 80 degrees and of strength 0.1 to 10 (log-uniform), colours uniform in `[0, 1)`.
+/// Draws hair over the everyday range: widths log-uniform in 1 to 30 degrees, shifts uniform within 15 degrees, glints at 10 to 80 degrees
+/// and of strength 0.1 to 10 (log-uniform), colours uniform in `[0, 1)`.
 ///
 /// # Errors
 ///
-/// Never: every range lies within those accepted.
+/// Returns an error only if drawn parameters are rejected, which does not happen because every range lies within the accepted one.
 pub fn random_hair(xi: &mut Independent) -> Result<HairParams, ParamError> {
     HairParams::from_values(&random(HairParams::bright().values(), xi))
 }

@@ -1,20 +1,20 @@
-//! The timer: contenders in turns, round by round, and order statistics over the rounds.
+//! Timer that runs contenders in turns, round by round, with order statistics over the rounds.
 
 use hairis_benches::task::Pass;
 use hairis_instruments::stats::{Estimate, percentile};
 use std::time::Instant;
 
-/// A time in ns over the rounds.
+/// Spread of a time over the rounds, in ns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TimeSpread {
     /// First quartile, median and third quartile.
     pub(crate) quartiles: [f64; 3],
-    /// Standard error of the median: that of a normal spread of the same quartiles.
+    /// Standard error of the median, as of a normal spread of the same quartiles.
     pub(crate) standard_error: f64,
 }
 
 impl TimeSpread {
-    /// The median.
+    /// Returns the median with its standard error.
     pub(crate) const fn median(&self) -> Estimate {
         Estimate {
             value: self.quartiles[1],
@@ -23,12 +23,12 @@ impl TimeSpread {
     }
 }
 
-/// Contenders in the order of a round, which changes from round to round.
+/// Returns the contenders in the order of a round, which changes from round to round.
 pub(crate) fn turns(count: usize, round: usize) -> impl Iterator<Item = usize> {
     (0..count).map(move |k| (k + round) % count)
 }
 
-/// Times contenders in turn, in an order that changes from round to round; `time` gives the ns of a stretch of one.
+/// Times contenders in turn, in an order that changes from round to round; `time` returns the ns of a contender's stretch.
 pub(crate) fn in_turns<C>(
     contenders: &mut [C],
     rounds: usize,
@@ -51,7 +51,7 @@ pub(crate) fn in_turns<C>(
     ns.iter().map(spread).collect()
 }
 
-/// Time of `passes` passes, ns.
+/// Returns the time of `passes` passes, in ns.
 pub(crate) fn stretch(task: &mut dyn Pass, passes: u32) -> f64 {
     let start = Instant::now();
     for _ in 0..passes {
@@ -60,15 +60,15 @@ pub(crate) fn stretch(task: &mut dyn Pass, passes: u32) -> f64 {
     start.elapsed().as_secs_f64() * 1e9
 }
 
-/// First quartile, median and third quartile.
+/// Returns first quartile, median and third quartile.
 pub(crate) fn quartiles(samples: &[f64]) -> [f64; 3] {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);
     [0.25, 0.5, 0.75].map(|p| percentile(&sorted, p))
 }
 
-/// Standard error of the median of `count` numbers with these quartiles: that of a normal spread, whose deviation is 1/1.349 of
-/// their distance, and a median's error 1.2533 of a mean's.
+/// Returns the standard error of the median of `count` numbers with these quartiles. The spread is taken as normal: its deviation is
+/// 1/1.349 of the quartiles' distance, and a median's error 1.2533 of a mean's.
 pub(crate) fn median_error(quartiles: [f64; 3], count: usize) -> f64 {
     1.2533 / 1.349 * (quartiles[2] - quartiles[0]) / (count as f64).sqrt()
 }

@@ -1,7 +1,7 @@
-//! The engine of variances: every sampler of a hit under every light, from one set of directions each.
+//! Engine of the variances: every sampler of a hit under every light, from one set of directions each.
 //!
-//! Each subject's directions are drawn once and weighed by every light; each light's once and weighed by every subject. `study`,
-//! `claims` and the materials of `compare` are queries over what it finds.
+//! Each subject's directions are drawn once and weighed by every light. Each light's directions are drawn once and weighed by every
+//! subject. `study`, `claims` and the materials of `compare` are queries over its results.
 
 pub(crate) mod check;
 mod columns;
@@ -23,25 +23,25 @@ use serde::Serialize;
 use tally::{Tally, figures, largest};
 use wide::{f32x8, f64x8};
 
-/// Relative standard error of V beyond which a figure is left out: the light was hardly hit.
+/// Relative standard error of V beyond which a figure is left out, because the light was hardly hit.
 pub(crate) const MAX_RELATIVE_ERROR: f64 = 0.25;
 
-/// Candidates of each technique in the pools from which rays are chosen.
+/// Numbers of candidates of each technique in the pools from which rays are chosen.
 pub(crate) const POOL_SIZES: [u32; 2] = [4, 8];
 
-/// Samples of each subject. The first two are multiples of eight.
+/// Numbers of samples for each subject. The first two are multiples of eight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SampleBudget {
-    /// Samples of each sampler of each model.
+    /// Number of samples of each sampler of each model.
     pub samples: usize,
-    /// Samples of each light that is not visible from everywhere.
+    /// Number of samples of each light that is not visible from everywhere.
     pub light_samples: usize,
-    /// Pools of 32 + 32 candidates of each sampler and light, from whose parts rays are chosen; none if 0.
+    /// Number of pools of 32 + 32 candidates of each sampler and light, from whose parts rays are chosen; none if 0.
     pub pools: usize,
 }
 
 impl SampleBudget {
-    /// Numbers of the short run, or of the whole one.
+    /// Returns the numbers of samples of the short run, or of the whole one.
     #[must_use]
     pub const fn of(quick: bool) -> Self {
         if quick {
@@ -59,7 +59,7 @@ impl SampleBudget {
         }
     }
 
-    /// Samples of a light to one of a sampler.
+    /// Returns the ratio of a light's samples to those of a sampler.
     fn ratio(self) -> f32x8 {
         #[expect(
             clippy::cast_possible_truncation,
@@ -74,9 +74,9 @@ impl SampleBudget {
 pub(crate) struct Measured {
     #[serde(flatten)]
     pub(crate) figures: Figures,
-    /// Largest mean of RGB of a weight, whatever the light.
+    /// Largest weight, as the mean of RGB, whatever the light.
     pub(crate) max_weight: f64,
-    /// Its proven bound, where there is one: set when a study is read.
+    /// Proven bound on the weight, if there is one; set when a study is read.
     pub(crate) weight_bound: Option<f64>,
     /// Largest contribution in means, of the directions of the sampler and of the light.
     pub(crate) max_contribution: f64,
@@ -86,13 +86,13 @@ pub(crate) struct Measured {
     pub(crate) bias: Option<f64>,
 }
 
-/// A sampler at a hit.
+/// Sampler at a hit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Subject {
     pub(crate) scatter: Scatter,
     /// Numbers of the model and of the sampler among the streams.
     pub(crate) stream: [u64; 2],
-    /// Whether perfect sampling is estimated from its directions.
+    /// Whether perfect sampling is estimated from the directions of this sampler.
     pub(crate) is_source: bool,
 }
 
@@ -102,28 +102,28 @@ pub(crate) struct Found {
     pub(crate) perfect: Vec<Measured>,
 }
 
-/// Salt of the streams: no other part of the harness draws from them.
+/// Salt of the streams, from which no other part of the harness draws.
 const SALT: u64 = 0x57d7_0000_0000_0001;
 
 /// Eight directions drawn from a light.
 struct LightDraw {
     wi: Vec3x8,
-    /// A third of `cos theta_i`, all a mean of RGB needs besides S.
+    /// A third of `cos theta_i`, the only factor that a mean of RGB needs besides S.
     cosine: f64x8,
-    /// `cosine` times the radiance.
+    /// Product of `cosine` and the radiance.
     factor: [f64x8; 3],
-    /// The light's density, per steradian.
+    /// Density of the light, per steradian.
     pdf: f64x8,
 }
 
-/// Sums over the sampler's directions and over the light's; for perfect sampling as well where they are its source.
+/// Sums over the sampler's directions and over the light's. If the sampler is its source, perfect sampling has such sums as well.
 #[derive(Clone)]
 struct Strata {
     sampled: [Tally; 2],
     perfect: Option<[PerfectTally; 2]>,
 }
 
-/// The figures of each subject at one hit, whose streams have the number `key`.
+/// Measures each subject at one hit, whose streams have the number `key`.
 pub(crate) fn measure(
     [seed, key]: [u64; 2],
     budget: SampleBudget,
@@ -203,7 +203,7 @@ impl Strata {
     }
 }
 
-/// Adds a sampler's directions to the strata of each light; returns the largest weight.
+/// Adds a sampler's directions to the strata of each light, and returns the largest weight.
 fn by_sampler(
     scatter: &Scatter,
     from: &mut Independent,
@@ -248,7 +248,7 @@ fn by_light(scatter: &Scatter, draws: &[LightDraw], budget: SampleBudget, strata
         let pdf = widened(eval.pdf);
         let value = eval.value.map(widened);
         let [r, g, b] = [0, 1, 2].map(|c| value[c] * draw.factor[c]);
-        // In double precision: far from the lobes the density alone may be tiny.
+        // Double precision is needed, because the density alone may be tiny far from the lobes.
         let over_pdf = |x: f64x8| pdf.simd_gt(f64x8::ZERO).select(x / pdf, f64x8::ZERO);
         let weight = || over_pdf((value[0] + value[1] + value[2]) * draw.cosine);
         strata.push(

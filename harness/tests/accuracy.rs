@@ -1,4 +1,4 @@
-//! One lane and eight against the paper's formulas in double precision.
+//! Accuracy of one lane and of eight lanes against the paper's formulas in double precision.
 
 use crate::cases::{Case, Cases, Region, angles};
 use core::array::from_fn;
@@ -11,14 +11,14 @@ use hairis_variants::{AnyMaterial, AnyMaterial8, ModelId, Parameters as _};
 
 const CASES: usize = 10_000;
 const SEED: u64 = 0x0a17;
-/// Largest relative error of the pdf, as promised.
+/// Largest relative error of the pdf that is promised.
 const PDF: f64 = 1e-5;
-/// Largest relative error of S with Gaussians.
+/// Largest relative error of S with Gaussian bells.
 const S_GAUSSIAN: f64 = 1e-4;
 /// Largest relative error of S with Cauchy bells.
 const S_CAUCHY: f64 = 1e-5;
 
-/// S and pdf.
+/// Answer of a code path: S and pdf.
 type Answer = ([f32; 3], f32);
 
 #[test]
@@ -64,7 +64,7 @@ fn scalar(model: ModelId, case: &Case) -> Answer {
     (eval.value, eval.pdf)
 }
 
-/// Eight different materials, shading points and directions a call.
+/// Evaluates eight different materials, shading points and directions per call.
 fn eight(model: ModelId, level: Level, cases: &[Case]) -> Vec<Answer> {
     let (groups, rest) = cases.as_chunks::<8>();
     assert!(rest.is_empty(), "a number of cases that eight divides");
@@ -91,7 +91,7 @@ fn params(case: &Case) -> HairParams {
     HairParams::new(&case.desc).unwrap()
 }
 
-/// Reports the worst and the 99.9th percentile of each region; true if a bound is not kept.
+/// Reports the worst and the 99.9th percentile of each region; returns true if a bound is not kept.
 fn compare(
     report: &mut String,
     name: &str,
@@ -135,10 +135,10 @@ fn compare(
     failed
 }
 
-/// Relative errors of the pdf and of S, the worst channel. An oracle of 0 wants exactly 0.
+/// Returns the relative errors of the pdf and of S, as the worst channel. If the oracle returns 0, only exactly 0 is no error.
 ///
-/// A Gaussian bell below about 2^-115 is 0 by design: 2^-114 of each lobe's peak is no error of S. Peaks reach 1e7 here,
-/// so that is 1e-27 at most and most often 1e-34, where everyday values are 1.
+/// A Gaussian bell below about 2^-115 is 0 by design, so 2^-114 of each lobe's peak is no error of S. Peaks reach 1e7 here, so that is
+/// 1e-27 at most and most often 1e-34, where everyday values are 1.
 fn errors(shape: Shape, case: &Case, (value, pdf): &Answer) -> [f64; 2] {
     let parameters = params(case).desc().map(f64::from);
     let double = |w: Vec3| w.as_dvec3().to_array();
@@ -165,7 +165,7 @@ fn errors(shape: Shape, case: &Case, (value, pdf): &Answer) -> [f64; 2] {
     ]
 }
 
-/// The part of an error beyond `allowed`, relative to what was expected.
+/// Returns the part of an error beyond `allowed`, relative to the expected value.
 fn relative(got: f32, expected: f64, allowed: f64) -> f64 {
     let error = (f64::from(got) - expected).abs() - allowed;
     if error <= 0.0 { 0.0 } else { error / expected }

@@ -1,4 +1,4 @@
-//! Random shading points and directions over realistic hair.
+//! Cases of the tests: random shading points and directions over realistic hair.
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::Vec3;
@@ -10,15 +10,15 @@ use hairis_instruments::sequence::Independent;
 /// Region that `wi` was drawn from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Region {
-    /// Uniform on the sphere, as `wo` is.
+    /// Directions uniform on the sphere, as `wo` is.
     Sphere,
-    /// Within a few widths of the centre of a lobe, in inclination and azimuth.
+    /// Directions within a few widths of the centre of a lobe, in inclination and azimuth.
     Peaks,
-    /// `wo`, `wi` or both between 1e-3 and 0.1 rad from the axis.
+    /// Directions of which `wo`, `wi` or both are between 1e-3 and 0.1 rad from the axis.
     Grazing,
-    /// `|phi|` within 1e-4 to 1e-2 of pi.
+    /// Directions with `|phi|` within 1e-4 to 1e-2 of pi.
     Back,
-    /// `|phi|` within 1e-5 to 1e-2 of pi/2, where the glints' pdf is cut.
+    /// Directions with `|phi|` within 1e-5 to 1e-2 of pi/2, where the glints' pdf is cut.
     GlintCut,
 }
 
@@ -32,7 +32,7 @@ impl Region {
     ];
 }
 
-/// A shading point and a direction.
+/// Shading point and direction, with the region that the direction was drawn from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Case {
     pub(crate) region: Region,
@@ -41,14 +41,14 @@ pub(crate) struct Case {
     pub(crate) wi: Vec3,
 }
 
-/// The directions compared are further than this from the axis, rad.
+/// Least distance from the axis of the directions compared, rad.
 const FROM_AXIS: f64 = 1e-3;
 
-/// The pdf jumps by the glints' where `|phi|` is pi/2, and single precision knows `phi` to some 1e-7 rad only: no
-/// case is nearer to the jump than this, rad.
+/// Least distance of a case from the jump of the pdf, rad. The pdf jumps by the glints' if `|phi|` is pi/2, and single precision resolves
+/// `phi` only to some 1e-7 rad.
 const CUT_BAND: f64 = 1e-6;
 
-/// Case after case, all of them from one seed.
+/// Sequence of cases, all from one seed.
 pub(crate) struct Cases(Independent);
 
 impl Cases {
@@ -56,7 +56,7 @@ impl Cases {
         Self(Independent::new(seed, 0))
     }
 
-    /// The next case; the regions take turns.
+    /// Draws the next case; the regions take turns.
     pub(crate) fn case(&mut self, i: usize) -> Case {
         let region = Region::ALL[i % Region::ALL.len()];
         let desc = self.desc();
@@ -76,7 +76,7 @@ impl Cases {
         }
     }
 
-    /// Uniform numbers of 24 bits, exact in single precision; one in eight at an end of the interval.
+    /// Draws uniform numbers of 24 bits, exact in single precision; one in eight is at an end of the interval.
     pub(crate) fn xi(&mut self) -> [f64; 3] {
         const STEP: f64 = 1.0 / 16_777_216.0;
         [(); 3].map(|()| match self.0.next_below(16) {
@@ -102,7 +102,7 @@ impl Cases {
         if self.chance(0.5) { 1.0 } else { -1.0 }
     }
 
-    /// Random hair, some of whose colours, channels and glints are 0.
+    /// Draws random hair, some of whose colours, channels and glints are 0.
     fn desc(&mut self) -> HairDesc {
         let mut desc = *random_hair(&mut self.0).expect("within range").desc();
         for color in [&mut desc.i_r, &mut desc.i_tt, &mut desc.i_trt] {
@@ -165,20 +165,20 @@ impl Cases {
         )
     }
 
-    /// Cosine and sine of the inclination of a direction uniform on the sphere.
+    /// Returns cosine and sine of the inclination of a direction uniform on the sphere.
     fn inclination(&mut self) -> (f64, f64) {
         let sin: f64 = self.between(-1.0, 1.0);
         ((1.0 - sin * sin).sqrt(), sin)
     }
 
-    /// Cosine and sine of an inclination 1e-3 to 0.1 rad from the axis, either end of it.
+    /// Returns cosine and sine of an inclination 1e-3 to 0.1 rad from either end of the axis.
     fn near_axis(&mut self) -> (f64, f64) {
         let from_axis = self.log_between(FROM_AXIS, 0.1);
         (from_axis.sin(), from_axis.cos() * self.sign())
     }
 }
 
-/// Inclination and azimuth, in double precision.
+/// Returns inclination and azimuth, in double precision.
 pub(crate) fn angles(w: Vec3) -> (f64, f64) {
     let w = w.as_dvec3();
     (w.x.atan2(w.y.hypot(w.z)), w.z.atan2(w.y))

@@ -1,5 +1,5 @@
-//! Samples against densities: chi-square on the sphere and Kolmogorov-Smirnov on the line, a million eight-lane samples
-//! each, from fixed seeds. A red test here is a bug.
+//! Samples compared with densities: chi-square on the sphere and Kolmogorov-Smirnov on the line, a million eight-lane samples each, from
+//! fixed seeds. A red test here is a bug.
 
 use core::f64::consts::{FRAC_PI_2, PI};
 use core::fmt::Write as _;
@@ -15,16 +15,16 @@ use hairis_reference::{HairReference, MatchedReference, Reference, Shape};
 use hairis_variants::{Cauchy, ModelId, Parameters as _};
 
 const SAMPLES: u32 = 1_000_000;
-/// Degrees; the tilted and grazing ones are where errors of the bounds show.
+/// Inclinations of the viewer in degrees. Errors of the bounds show at the tilted and grazing ones.
 const THETA_O: [f32; 4] = [0.0, 45.0, 85.0, -80.0];
-/// Cosine of the caps that are discarded.
+/// Cosine of the caps in which samples are discarded.
 const GRAZING: f64 = 1e-5;
-/// Chi-square tests of the whole grid: models, samplers, materials, inclinations, four lobes and their mixture.
+/// Number of chi-square tests of the whole grid: models, samplers, materials, inclinations, four lobes and their mixture.
 const TESTS: usize = 2 * SAMPLERS * 3 * 4 * 5;
-/// The published sampler, three matched ones, and one that chooses lobes by channel.
+/// Number of samplers: the published one, three matched ones, and one that chooses lobes by channel.
 const SAMPLERS: usize = 5;
 
-/// The default set, the same with every width 0.5 degrees and with every width 60 degrees; all are tilted.
+/// Returns the default set, the same with every width 0.5 degrees and with every width 60 degrees; all are tilted.
 fn materials() -> [(&'static str, HairParams); 3] {
     let all = |degrees: f32| {
         let width = degrees.to_radians();
@@ -43,7 +43,7 @@ fn materials() -> [(&'static str, HairParams); 3] {
     ]
 }
 
-/// The default set with every width times `factor`.
+/// Returns the default set with every width times `factor`.
 fn widened(factor: f32) -> HairParams {
     let d = *HairParams::bright().desc();
     HairParams::new(&d.with_width_factor(factor)).unwrap()
@@ -58,7 +58,7 @@ fn double(v: Vec3) -> [f64; 3] {
     [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
 }
 
-/// Sine and cosine of `theta_i` and of `phi_o - phi_i`, each pair times a length.
+/// Returns sine and cosine of `theta_i` and of `phi_o - phi_i`, each pair times a length.
 fn sides(wo: Vec3, wi: Vec3) -> [[f64; 2]; 2] {
     let ([_, v_o, w_o], [u, v, w]) = (double(wo), double(wi));
     [
@@ -67,15 +67,15 @@ fn sides(wo: Vec3, wi: Vec3) -> [[f64; 2]; 2] {
     ]
 }
 
-/// `theta_i` and `phi_o - phi_i` in (-pi, pi].
+/// Returns `theta_i` and `phi_o - phi_i` in (-pi, pi].
 fn angles(wo: Vec3, wi: Vec3) -> [f64; 2] {
     sides(wo, wi).map(|[sin, cos]| sin.atan2(cos))
 }
 
-/// Samples of some lobes of a shading point.
+/// Function that draws samples of some lobes of a shading point.
 type Draw = Box<dyn Fn(&[f32x8; 3]) -> Sample8>;
 
-/// Samples of a model of the registry.
+/// Returns a function that prepares samples of a model of the registry.
 fn registered(model: ModelId) -> impl Fn(&HairParams, Vec3, LobeMask) -> Draw {
     move |params, wo, mask| {
         let bsdf = model
@@ -87,7 +87,7 @@ fn registered(model: ModelId) -> impl Fn(&HairParams, Vec3, LobeMask) -> Draw {
     }
 }
 
-/// Samples of a model that is not in the registry.
+/// Returns a function that prepares samples of a model that is not in the registry.
 fn of_type<M: Model + 'static>(model: M) -> impl Fn(&M::Params, Vec3, LobeMask) -> Draw {
     move |params, wo, mask| {
         let bsdf = Material::new(&model, params).prepare(wo).with_lobes(mask);
@@ -95,7 +95,7 @@ fn of_type<M: Model + 'static>(model: M) -> impl Fn(&M::Params, Vec3, LobeMask) 
     }
 }
 
-/// Calls `f` with each of a million samples, `None` for the discarded.
+/// Calls `f` with each of a million samples, or with `None` for a discarded one.
 fn for_each_sample(draw: &Draw, stream: u64, mut f: impl FnMut(Option<Vec3>)) {
     let mut xi = Independent::new(2012, stream);
     for _ in 0..SAMPLES / 8 {
@@ -107,7 +107,7 @@ fn for_each_sample(draw: &Draw, stream: u64, mut f: impl FnMut(Option<Vec3>)) {
     }
 }
 
-/// A sampler in double precision.
+/// Sampler in double precision.
 trait ReferenceSampler: Reference<f64> {
     fn sample_theta(&self, lobe: Lobe, xi: f64) -> f64;
     fn sample_phi(&self, lobe: Lobe, xi: f64) -> f64;
@@ -135,25 +135,25 @@ macro_rules! reference_sampler {
 }
 reference_sampler! { HairReference MatchedReference }
 
-/// The published sampler of a shape.
+/// Returns a function that prepares the published sampler of a shape.
 fn published(shape: Shape) -> impl Fn(&HairParams, Vec3) -> HairReference<f64> {
     move |params, wo| HairReference::prepare(&params.desc().map(f64::from), shape, double(wo))
 }
 
-/// The matched sampler of a shape.
+/// Returns a function that prepares the matched sampler of a shape.
 fn matched(shape: Shape, bands: usize) -> impl Fn(&HairParams, Vec3) -> MatchedReference<f64> {
     move |params, wo| {
         MatchedReference::prepare(&params.desc().map(f64::from), shape, double(wo), bands)
     }
 }
 
-/// Cells in `theta_i` and `phi` that resolve every lobe, and the samples each should hold.
+/// Cells in `theta_i` and `phi` that resolve every lobe, and the number of samples that each should hold.
 struct SphereCells {
     theta: Vec<f64>,
     phi: Vec<f64>,
     /// Edges of the inclinations and azimuths.
     edges: [AngleEdges; 2],
-    /// Row by row, then one for the caps, whose samples are discarded.
+    /// Expected numbers, row by row, then one for the caps, whose samples are discarded.
     expected: Vec<f64>,
 }
 
@@ -180,7 +180,7 @@ impl SphereCells {
         let tidy = |edges: &mut Vec<f64>, end: f64| {
             edges.retain(|x| x.abs() <= end);
             edges.sort_by(f64::total_cmp);
-            // Edges closer than a float resolves would split hairs.
+            // Edges closer than a float resolves are merged.
             edges.dedup_by(|a, b| *a - *b < 1e-5);
         };
         tidy(&mut theta, inner);
@@ -188,7 +188,7 @@ impl SphereCells {
         let mut expected = vec![0.0; (theta.len() - 1) * (phi.len() - 1) + 1];
         for lobe in Lobe::ALL.into_iter().filter(|lobe| mask.contains(*lobe)) {
             let number = f64::from(SAMPLES) * of(lobe) / total;
-            // Every cdf of phi ascends from -pi to 0 and from 0 to pi, and some jump between.
+            // Every cdf of phi ascends from -pi to 0 and from 0 to pi, and some cdfs jump between.
             let part = |ends: &[f64]| {
                 let end = if ends[1] == 0.0 {
                     -f64::MIN_POSITIVE
@@ -241,7 +241,7 @@ impl SphereCells {
         (chi_square(&observed, &self.expected, 5.0), observed)
     }
 
-    /// Writes both tables where a failure can be looked at, and says where.
+    /// Writes both tables to a file for inspection of a failure, and returns its path.
     fn dump(&self, observed: &[u64], name: &str) -> String {
         let mut text = String::from("theta_from,theta_to,phi_from,phi_to,observed,expected\n");
         let mut cells = observed.iter().zip(&self.expected);
@@ -262,7 +262,7 @@ impl SphereCells {
     }
 }
 
-/// The lobes one by one, and their mixture.
+/// Returns the lobes one by one, and their mixture.
 fn masks() -> impl Iterator<Item = (String, LobeMask)> {
     let alone = Lobe::ALL
         .into_iter()
@@ -284,8 +284,8 @@ fn check<T: ReferenceSampler>(
             let reference = reference(&params, wo);
             for (lobe, mask) in masks() {
                 stream += 1;
-                // A Gaussian lobe so far off the sphere is cut to 0 (at 2^-115 of its peak) across its tail: part of its
-                // samples are discarded, as they must be.
+                // A Gaussian lobe so far off the sphere is cut to 0 (at 2^-115 of its peak) across its tail, so that part of its samples
+                // are discarded, as they must be.
                 let share: f64 = Lobe::ALL
                     .iter()
                     .map(|l| reference.probabilities()[*l] * f64::from(mask.factor(*l)))
@@ -412,7 +412,7 @@ fn samples_by_channel_follow_their_density() {
 
 #[test]
 fn widths_off_by_a_twentieth_are_found() {
-    // The control: the same test must reject a sampler whose widths are 5% too large.
+    // Control: the same test must reject a sampler whose widths are 5% too large.
     for degrees in [0.0, -80.0] {
         let wo = wo(degrees);
         let reference = HairReference::prepare(

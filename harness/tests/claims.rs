@@ -1,4 +1,4 @@
-//! The direction of each of the paper's claims: which figures are on which side, and what verdict they come to.
+//! Direction of each of the paper's claims: the side of the threshold that figures are on, and the verdict that follows.
 
 use hairis_harness::claims::{Claim, Claims, Figure, Origin, Role, Verdict, run, tables};
 use hairis_harness::journal::Journal;
@@ -17,7 +17,7 @@ fn claim(id: &str) -> &'static Claim {
         .unwrap_or_else(|| panic!("no claim {id}"))
 }
 
-/// The figures whose names contain `words`, of which there is at least one.
+/// Returns the figures whose names contain `words`; there is at least one.
 fn figures(of: &'static Claim, words: &str) -> Vec<&'static Figure> {
     let found: Vec<&Figure> = of
         .figures

@@ -1,4 +1,4 @@
-//! The binary `hairis`, run as scripts run it.
+//! Tests of the binary `hairis`, which is run as scripts run it.
 
 mod agreement;
 mod claims;
@@ -20,7 +20,7 @@ use std::thread;
 
 const PATHS: [&str; 4] = ["scalar", "x8", "batch", "f64"];
 
-/// Result of a run.
+/// Result of a run of the binary.
 struct Run {
     code: Option<i32>,
     out: Vec<String>,
@@ -46,7 +46,7 @@ fn command(args: &[&str]) -> Command {
     command
 }
 
-/// Sends a signal to a process, and waits for its end.
+/// Sends a signal to a process, and waits for the process to end.
 #[cfg(unix)]
 fn end(child: Child, signal: &str) -> Run {
     let sent = Command::new("kill")
@@ -59,7 +59,7 @@ fn end(child: Child, signal: &str) -> Run {
 fn run(args: &[&str], input: &[u8]) -> Run {
     let mut child = command(args).spawn().unwrap();
     let (mut stdin, input) = (child.stdin.take().unwrap(), input.to_vec());
-    // A run that refuses its flags reads nothing.
+    // A run that rejects its flags reads nothing.
     let writer = thread::spawn(move || drop(stdin.write_all(&input)));
     let output = child.wait_with_output().unwrap();
     writer.join().unwrap();
@@ -88,7 +88,7 @@ fn eval(path: &str, requests: &[Value]) -> Run {
     run(&["eval", "--path", path], lines.join("\n").as_bytes())
 }
 
-/// A request that is answered.
+/// Returns a request that is answered.
 fn good() -> Value {
     json!({
         "model": "gaussian",
@@ -101,7 +101,7 @@ fn good() -> Value {
     })
 }
 
-/// The request of a case, every number written as it is in single precision.
+/// Returns the request of a case, with every number written as it is in single precision.
 fn request(model: &str, case: &Case) -> Value {
     let d = &case.desc;
     let three = |x: [f32; 3]| x.map(f64::from);
@@ -118,14 +118,14 @@ fn request(model: &str, case: &Case) -> Value {
     })
 }
 
-/// A request for the sample of `xi` in place of the value at wi.
+/// Returns a request for the sample of `xi` in place of the value at wi.
 fn with_xi(mut request: Value, xi: [f64; 3]) -> Value {
     request.as_object_mut().unwrap().remove("wi");
     request["xi"] = json!(xi);
     request
 }
 
-/// Names of the files in a folder, sorted.
+/// Returns the names of the files in a folder, sorted.
 fn names(dir: &Path) -> Vec<String> {
     let entries = fs::read_dir(dir).unwrap();
     let mut names: Vec<_> = entries

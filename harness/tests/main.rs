@@ -1,4 +1,4 @@
-//! Tests of the harness: one binary, a module a subject.
+//! Tests of the harness, as one binary with a module per subject.
 #![allow(clippy::unwrap_used, reason = "a test may panic: that is how it fails")]
 
 mod accuracy;

@@ -1,4 +1,4 @@
-//! Timings: here, and not beside the code, so that what is timed is compiled once.
+//! Tests of the timings, outside of the crate so that the timed code is compiled once.
 
 use hairis::simd::Level;
 use hairis_harness::speed::{SpeedConfig, TimedOp, run};
@@ -15,9 +15,9 @@ fn every_contender_is_timed_and_right() {
         |done| last = done,
     )
     .expect("hair within range");
-    // Slices take part where a shading point is given: evaluation and sampling, short ones and packets just written unless
-    // all directions are in the tails. Eight lanes at one shading point take part where it has several samples, slices of
-    // hits where it has one; with `Conserving` as well, of the two models that do not conserve energy by their parameters.
+    // Slices take part if a shading point is given: evaluation and sampling, and short ones and packets just written unless all directions
+    // are in the tails. Eight lanes at one shading point take part if it has several samples, and slices of hits if it has one. With
+    // `Conserving` they take part as well, for the two models that do not conserve energy by their parameters.
     let levels = Level::available().count();
     let models = ModelId::defaults_of_names().count();
     assert_eq!(

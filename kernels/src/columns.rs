@@ -1,4 +1,4 @@
-//! Arguments of calls on columns: a slice per component, of one length, which is checked.
+//! Arguments of calls on columns: one slice per component. All slices must be of one length, which every call checks.
 
 mod frames;
 mod groups;
@@ -10,12 +10,12 @@ pub use groups::in_groups;
 use crate::simd::columns::Columns;
 use core::fmt;
 
-/// Slices of one call whose lengths differ: which, how long it is, and how long the first is.
+/// Error of a call whose slices differ in length: the slice at fault, its length, and the length of the first slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LengthError {
     /// Name of the slice at fault.
     pub field: &'static str,
-    /// Its length.
+    /// Length of the slice at fault.
     pub len: usize,
     /// Length of the first slice, which all others must have.
     pub expected: usize,
@@ -38,39 +38,40 @@ impl fmt::Display for LengthError {
 
 impl core::error::Error for LengthError {}
 
-/// Hits by column, one entry per hit.
+/// Hits stored by column, one entry per hit.
 #[derive(Clone, Copy, Debug)]
 pub struct HitColumns<'a> {
-    /// Towards the viewer, in the fibre's frame: u, v, w. Of any length, as for [`Material::prepare`](crate::Material::prepare).
+    /// Direction towards the viewer, in the fibre's frame: u, v, w. It may have any length, as for
+    /// [`Material::prepare`](crate::Material::prepare).
     pub wo: [&'a [f32]; 3],
-    /// Offset across the fibre, as [`Hit::h`](crate::Hit::h): clamped to `[-1, 1]`, NaN counts as 0. `None` is 0 for all
-    /// hits; models of the far field ignore it.
+    /// Offset across the fibre like [`Hit::h`](crate::Hit::h), clamped to `[-1, 1]`; NaN counts as 0. With `None` the offset is 0
+    /// for all hits; far-field models ignore it.
     pub h: Option<&'a [f32]>,
 }
 
-/// Results of [`Bsdf::eval_columns`](crate::Bsdf::eval_columns) and [`Material::eval_hits`](crate::Material::eval_hits): one
-/// entry per direction. Columns that are `None` are not written.
+/// Results of [`Bsdf::eval_columns`](crate::Bsdf::eval_columns) and [`Material::eval_hits`](crate::Material::eval_hits), one entry
+/// per direction. Columns that are `None` are not written.
 #[derive(Debug, Default)]
 pub struct EvalColumns<'a> {
-    /// S, red, green and blue, per steradian.
+    /// S without the cosine, red, green and blue, per steradian.
     pub value: Option<[&'a mut [f32]; 3]>,
-    /// Density, per steradian.
+    /// Density of sampling the direction, per steradian.
     pub pdf: Option<&'a mut [f32]>,
 }
 
-/// Results of [`Bsdf::sample_columns`](crate::Bsdf::sample_columns) and [`Material::sample_hits`](crate::Material::sample_hits):
-/// one entry per sample. Columns that are `None` are not written; a path tracer needs neither value nor slot.
+/// Results of [`Bsdf::sample_columns`](crate::Bsdf::sample_columns) and [`Material::sample_hits`](crate::Material::sample_hits), one
+/// entry per sample. Columns that are `None` are not written; a path tracer needs neither value nor slot.
 ///
-/// A discarded sample has slot -1, and value, density and weight 0.
+/// A discarded sample has slot -1, and its value, density and weight are 0.
 #[derive(Debug, Default)]
 pub struct SampleColumns<'a> {
-    /// Towards the light, in the fibre's frame: u, v, w.
+    /// Direction towards the light, in the fibre's frame: u, v, w.
     pub wi: Option<[&'a mut [f32]; 3]>,
-    /// S, red, green and blue, per steradian.
+    /// S without the cosine, red, green and blue, per steradian.
     pub value: Option<[&'a mut [f32]; 3]>,
-    /// Density, per steradian.
+    /// Density of sampling the direction, per steradian.
     pub pdf: Option<&'a mut [f32]>,
-    /// `value * cos theta_i / pdf`, red, green and blue.
+    /// Throughput weight `value * cos theta_i / pdf`, red, green and blue.
     pub weight: Option<[&'a mut [f32]; 3]>,
     /// Slot of the chosen lobe as a number, -1 for a discarded sample.
     pub slot: Option<&'a mut [f32]>,
@@ -81,8 +82,8 @@ impl<'a> HitColumns<'a> {
         self.wo[0].len()
     }
 
-    // Not inlined, as those of results below: they are compiled once, and not in every call of every model.
-    /// The columns of the hits and three more, of one length.
+    // Not inlined, like the functions of results below, so that they are compiled once and not in every call of every model.
+    /// Returns the columns of the hits and three more, all of one length.
     pub(crate) fn with(
         &self,
         [x, y, z]: [&'a [f32]; 3],
@@ -96,7 +97,7 @@ impl<'a> HitColumns<'a> {
         Ok([u, v, w, self.h.unwrap_or_default(), x, y, z])
     }
 
-    /// The columns of the hits, of directions and of uniform numbers, of one length.
+    /// Returns the columns of the hits, of directions and of uniform numbers, all of one length.
     pub(crate) fn with_both(
         &self,
         wi: [&'a [f32]; 3],
@@ -109,7 +110,7 @@ impl<'a> HitColumns<'a> {
 }
 
 impl<'a> EvalColumns<'a> {
-    /// All columns; empty ones where they are left out.
+    /// Returns all columns, with empty slices for the columns that are left out.
     pub(crate) fn columns(
         self,
         expected: usize,
@@ -121,7 +122,7 @@ impl<'a> EvalColumns<'a> {
 }
 
 impl<'a> SampleColumns<'a> {
-    /// All columns; empty ones where they are left out.
+    /// Returns all columns, with empty slices for the columns that are left out.
     pub(crate) fn columns(
         self,
         expected: usize,
@@ -146,7 +147,7 @@ pub(crate) const SAMPLE: [&str; 11] = [
     "weight.b", "slot",
 ];
 
-/// Names of the columns of a sample beside those of an evaluation.
+/// Names of the columns of a sample in a call that also writes columns of an evaluation.
 pub(crate) const SAMPLE_OF_BOTH: [&str; 11] = [
     "sample.wi.u",
     "sample.wi.v",
@@ -171,7 +172,7 @@ fn three(columns: Option<[&mut [f32]; 3]>) -> [Option<&mut [f32]>; 3] {
     columns.map_or([None, None, None], |columns| columns.map(Some))
 }
 
-/// The columns, of which those that are there have the expected length; empty ones for the others.
+/// Returns the columns, with empty slices for those that are left out. All others must have the expected length.
 #[inline(always)]
 fn present<'a, const N: usize>(
     expected: usize,
@@ -184,7 +185,7 @@ fn present<'a, const N: usize>(
     Ok(columns.map(Option::unwrap_or_default))
 }
 
-/// Refuses three columns of another length.
+/// Returns an error if one of three columns is not of the expected length.
 #[inline(always)]
 pub(crate) fn check_lengths3(
     expected: usize,
@@ -197,7 +198,7 @@ pub(crate) fn check_lengths3(
     check_length(expected, names[2], Some(z))
 }
 
-/// Refuses a column of another length.
+/// Returns an error if a column is not of the expected length.
 #[inline(always)]
 pub(crate) fn check_length<T>(
     expected: usize,
@@ -214,8 +215,8 @@ pub(crate) fn check_length<T>(
     }
 }
 
-/// Columns of one length. The lengths of those that differ are put together only for the error: the check is most of what a short
-/// slice costs.
+/// Checks that all columns are of one length. The lengths are compared one by one only for the error, because the check is most of
+/// the cost of a short slice.
 #[inline(always)]
 pub(crate) fn check_columns<'a, const I: usize, const N: usize>(
     in_names: &[&'static str; I],
@@ -223,7 +224,7 @@ pub(crate) fn check_columns<'a, const I: usize, const N: usize>(
     out_names: &[&'static str; N],
     outputs: [&'a mut [f32]; N],
 ) -> Result<Columns<'a, I, N>, LengthError> {
-    // By value: columns that a cold call refers to would be copied to memory before every check.
+    // By value, because columns that a cold call refers to would be copied to memory before every check.
     let lens = (
         inputs.map(<[f32]>::len),
         outputs.each_ref().map(|column| column.len()),
@@ -232,7 +233,7 @@ pub(crate) fn check_columns<'a, const I: usize, const N: usize>(
         .ok_or_else(|| first_that_differs(in_names, lens.0, out_names, lens.1))
 }
 
-/// The first of the slices that is not of the length of the first input.
+/// Returns the error about the first of the slices that is not as long as the first input.
 #[cold]
 fn first_that_differs<const I: usize, const N: usize>(
     in_names: &[&'static str; I],

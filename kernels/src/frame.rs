@@ -1,28 +1,28 @@
-//! Directions, and the frame of a fibre.
+//! Vectors of lanes, and the frame of a fibre.
 //!
-//! In the frame of a fibre `x` is `u`, along the fibre from root to tip; `y` is `v` and `z` is `w`, which span the
-//! normal plane. The azimuth of `v` is 0 and that of `w` is pi/2.
+//! In the frame of a fibre `x` is `u`, along the fibre from root to tip, while `y` is `v` and `z` is `w`, which span the normal
+//! plane. The azimuth of `v` is 0, and the azimuth of `w` is pi/2.
 
 use crate::simd::Lanes;
 use glam::{Vec3, Vec3A};
 use wide::f32x8;
 
-/// Vector of three numbers per lane. In a fibre's frame: `x` along the fibre (u), `y` and `z` in its normal plane (v, w).
+/// Vector of three numbers per lane. In a fibre's frame, `x` is along the fibre (u), and `y` and `z` are in its normal plane (v, w).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vec3x<L> {
-    /// Along u, or the world's x.
+    /// Component along u, or along the world's x.
     pub x: L,
-    /// Along v, or the world's y.
+    /// Component along v, or along the world's y.
     pub y: L,
-    /// Along w, or the world's z.
+    /// Component along w, or along the world's z.
     pub z: L,
 }
 
-/// Eight vectors, lane by lane.
+/// Eight vectors, one per lane, stored by component.
 pub type Vec3x8 = Vec3x<f32x8>;
 
 impl<L> Vec3x<L> {
-    /// A vector of its components.
+    /// Makes a vector from its three components.
     #[inline(always)]
     #[must_use]
     pub const fn new(x: L, y: L, z: L) -> Self {
@@ -31,7 +31,7 @@ impl<L> Vec3x<L> {
 }
 
 impl<L: Lanes> Vec3x<L> {
-    /// Dot product.
+    /// Returns the dot product of two vectors, lane by lane.
     #[inline(always)]
     #[must_use]
     pub fn dot(self, other: Self) -> L {
@@ -39,7 +39,8 @@ impl<L: Lanes> Vec3x<L> {
             .mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
     }
 
-    /// Cosine of the inclination of a unit vector in a fibre's frame: the factor that [`Eval`](crate::Eval)'s value leaves out.
+    /// Returns the cosine of the inclination of a unit vector in a fibre's frame, the factor that the value of [`Eval`](crate::Eval)
+    /// leaves out.
     ///
     /// ```
     /// use hairis::Vec3x8;
@@ -53,36 +54,35 @@ impl<L: Lanes> Vec3x<L> {
         self.y.mul_add(self.y, self.z * self.z).sqrt()
     }
 
-    /// Copies the vector with its components read one by one: see
-    /// [`Schedule::alone`](crate::simd::Schedule::alone). Callers have often just written them;
-    /// what is read across two such writes waits until both have left the CPU's queue.
+    /// Copies the vector with its components read one by one: see [`Schedule::alone`](crate::simd::Schedule::alone). Callers have
+    /// often just written the components, and a read across two such writes waits until both have left the CPU's queue.
     #[inline(always)]
     #[must_use]
     pub(crate) fn alone(self) -> Self {
         Self::new(self.x.alone(), self.y.alone(), self.z.alone())
     }
 
-    /// The vector times a number per lane.
+    /// Multiplies the vector by a number per lane.
     #[inline(always)]
     #[must_use]
     pub fn scale(self, by: L) -> Self {
         Self::new(self.x * by, self.y * by, self.z * by)
     }
 
-    /// The sum of two vectors.
+    /// Adds two vectors, lane by lane.
     #[inline(always)]
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
     }
 
-    /// The vector in its storage form.
+    /// Returns the vector in its storage form.
     #[inline(always)]
     pub fn store(self) -> Vec3x<L::Stored> {
         Vec3x::new(self.x.store(), self.y.store(), self.z.store())
     }
 
-    /// The stored vector, which may just have been written, as lanes.
+    /// Loads a stored vector, which may just have been written, as lanes.
     #[inline(always)]
     pub(crate) fn load_fresh<C: crate::simd::Broadcast<L>>(stored: &Vec3x<C>) -> Self {
         Self::new(
@@ -92,7 +92,7 @@ impl<L: Lanes> Vec3x<L> {
         )
     }
 
-    /// The stored vector as lanes.
+    /// Loads a stored vector as lanes.
     #[inline(always)]
     pub(crate) fn load<C: crate::simd::Broadcast<L>>(stored: &Vec3x<C>) -> Self {
         Self::new(stored.x.lanes(), stored.y.lanes(), stored.z.lanes())
@@ -107,11 +107,11 @@ impl Vec3x8 {
         Self::new(f32x8::splat(v.x), f32x8::splat(v.y), f32x8::splat(v.z))
     }
 
-    /// The vector of one lane.
+    /// Returns the vector of one lane.
     ///
     /// # Panics
     ///
-    /// If `lane` is above 7.
+    /// Panics if `lane` is above 7.
     #[inline]
     #[must_use]
     pub fn lane(&self, lane: usize) -> Vec3 {
@@ -183,7 +183,7 @@ impl From<Vec3x<f32>> for Vec3 {
     }
 }
 
-/// The orthonormal, right-handed frame of a fibre: `u` along it from root to tip, `v` and `w` across.
+/// Orthonormal, right-handed frame of a fibre: `u` along the fibre from root to tip, `v` and `w` across.
 ///
 /// ```
 /// use glam::Vec3;
@@ -195,19 +195,19 @@ impl From<Vec3x<f32>> for Vec3 {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiberFrame {
-    /// Along the fibre, from root to tip, unit.
+    /// Direction along the fibre, from root to tip, unit.
     pub u: Vec3,
-    /// Azimuth 0, unit.
+    /// Direction of azimuth 0, unit.
     pub v: Vec3,
-    /// Azimuth pi/2, unit: `u` cross `v`.
+    /// Direction of azimuth pi/2, unit: `u` cross `v`.
     pub w: Vec3,
 }
 
 impl FiberFrame {
-    /// The frame of a fibre with this tangent (root to tip, of any length).
+    /// Makes the frame of a fibre from its tangent (root to tip, of any length).
     ///
-    /// `v` and `w` depend on the tangent alone, continuously except where its z changes sign. The published model depends on
-    /// differences of azimuth only, so their choice does not matter to it.
+    /// `v` and `w` depend on the tangent alone, continuously except where its z changes sign. The choice of `v` and `w` does not
+    /// matter to the published model, which depends only on differences of azimuth.
     ///
     /// - Domain: a tangent that is zero or not finite counts as +x.
     #[inline]
@@ -218,9 +218,9 @@ impl FiberFrame {
         Self { u, v, w }
     }
 
-    /// The frame whose `v` (azimuth 0) is the part of `normal` across the fibre.
+    /// Makes the frame whose `v` (azimuth 0) is the part of `normal` across the fibre.
     ///
-    /// - Domain: a normal that is zero, not finite or along the tangent is ignored: as
+    /// - Domain: a normal that is zero, not finite or along the tangent is ignored, which gives the frame of
     ///   [`from_tangent`](Self::from_tangent).
     #[inline]
     #[must_use]
@@ -228,12 +228,12 @@ impl FiberFrame {
         let any = Self::from_tangent(tangent);
         let normal = unit_or(normal, Vec3::ZERO);
         let across = normal - any.u * normal.dot(any.u);
-        // Below this the direction is made of rounding errors.
+        // Below this length the direction consists of rounding errors.
         if across.length_squared() < 1e-10 {
             return any;
         }
         let v = unit_or(across, any.v);
-        // Once more: the first difference leaves up to 1e-2 of u where the normal is almost along it.
+        // Repeated, because the first difference leaves up to 1e-2 of u where the normal is almost along it.
         let v = unit_or(v - any.u * v.dot(any.u), any.v);
         Self {
             u: any.u,
@@ -242,23 +242,24 @@ impl FiberFrame {
         }
     }
 
-    /// World to fibre: `(u, v, w)` components of `v`.
+    /// Transforms a vector from the world to the frame of the fibre: the `(u, v, w)` components of `v`.
     ///
-    /// - Domain: directions, and any vector up to 1e37; beyond, the sums may overflow.
+    /// - Domain: directions, and any vector up to 1e37; beyond that length the sums may overflow.
     #[inline]
     #[must_use]
     pub fn to_local(&self, v: Vec3) -> Vec3 {
         Vec3::new(v.dot(self.u), v.dot(self.v), v.dot(self.w))
     }
 
-    /// Fibre to world.
+    /// Transforms a vector from the frame of the fibre to the world.
     #[inline]
     #[must_use]
     pub fn to_world(&self, v: Vec3) -> Vec3 {
         self.u * v.x + self.v * v.y + self.w * v.z
     }
 
-    /// Cosine of the inclination of a unit vector in a fibre's frame: the factor that [`Eval`](crate::Eval)'s value leaves out.
+    /// Returns the cosine of the inclination of a unit vector in a fibre's frame, the factor that the value of [`Eval`](crate::Eval)
+    /// leaves out.
     ///
     /// `cos theta_i = sqrt(v^2 + w^2)`
     #[inline]
@@ -267,12 +268,12 @@ impl FiberFrame {
         Vec3x::from(wi).cos_theta()
     }
 
-    /// Offset across the fibre of a hit with this outward normal, seen from `wo`: [`Hit::h`](crate::Hit::h). Both are in
-    /// the world.
+    /// Returns the offset across the fibre of a hit with this outward normal, viewed from `wo`: [`Hit::h`](crate::Hit::h). Both
+    /// vectors are in the world.
     ///
     /// `h = u . (n x wo) / cos theta_o`, with `n` the part of the normal across the fibre, at unit length
     ///
-    /// - Domain: vectors of any length. Where either lies along the fibre, or is zero or not finite, the offset is 0.
+    /// - Domain: vectors of any length. If either vector lies along the fibre, or is zero or not finite, the offset is 0.
     ///
     /// ```
     /// use glam::Vec3;
@@ -293,7 +294,8 @@ impl FiberFrame {
     }
 }
 
-/// `v` at unit length; `fallback` if it is zero or not finite. Scaled first, so that no finite length overflows.
+/// Scales `v` to unit length; returns `fallback` if `v` is zero or not finite. Scaled by its largest component first, so that no
+/// finite length overflows.
 #[inline]
 fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
     let largest = v.abs().max_element();
@@ -304,14 +306,15 @@ fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
     }
 }
 
-/// One frame per lane: the same for eight directions ([`splat`](Self::splat)), or those of eight shading points.
+/// Frames of fibres, one per lane: one frame repeated for eight directions ([`splat`](Self::splat)), or the frames of eight shading
+/// points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiberFrame8 {
-    /// Along each fibre.
+    /// Direction along each fibre, from root to tip, unit.
     pub u: Vec3x8,
-    /// Azimuth 0.
+    /// Direction of azimuth 0, unit.
     pub v: Vec3x8,
-    /// Azimuth pi/2.
+    /// Direction of azimuth pi/2, unit.
     pub w: Vec3x8,
 }
 
@@ -327,13 +330,14 @@ impl FiberFrame8 {
         }
     }
 
-    /// Frames of eight hits: lane by lane as [`FiberFrame::from_tangent_normal`], for unit vectors.
+    /// Makes the frames of eight hits from unit tangents and normals, lane by lane like [`FiberFrame::from_tangent_normal`].
     ///
-    /// With `wo` as the normal, its azimuth is 0 in every lane.
+    /// With `wo` as the normal, the azimuth of `wo` is 0 in every lane.
     ///
-    /// - Shape: a hit per lane.
-    /// - Domain: unit vectors. Where the normal lies along the fibre, to within 1e-5 rad, `v` is any direction across.
-    /// - Accuracy: orthonormal to 1e-6; `v` within 1e-4 of that of the scalar call where normal and tangent are 0.01 rad apart.
+    /// - Shape: one hit per lane.
+    /// - Domain: unit vectors. If the normal lies along the fibre, to within 1e-5 rad, `v` is any direction across the fibre.
+    /// - Accuracy: orthonormal to 1e-6; `v` within 1e-4 of the result of the scalar call where normal and tangent are 0.01 rad
+    ///   apart.
     ///
     /// ```
     /// use glam::Vec3;
@@ -359,7 +363,7 @@ impl FiberFrame8 {
             })
             .into();
         }
-        // Once more: the first difference leaves up to 1e-2 of the tangent where the normal is almost along it.
+        // Repeated, because the first difference leaves up to 1e-2 of the tangent where the normal is almost along it.
         let v = unit8(&reject8(&v, tangents));
         let u = tangents;
         let w = Vec3x8::new(
@@ -370,9 +374,9 @@ impl FiberFrame8 {
         Self { u: *u, v, w }
     }
 
-    /// Frames of eight hits: lane by lane as [`FiberFrame::from_tangent`], for unit vectors.
+    /// Makes the frames of eight hits from unit tangents, lane by lane like [`FiberFrame::from_tangent`].
     ///
-    /// - Shape: a hit per lane.
+    /// - Shape: one hit per lane.
     /// - Accuracy: orthonormal to 1e-6.
     ///
     /// ```
@@ -396,10 +400,10 @@ impl FiberFrame8 {
         }
     }
 
-    /// Offsets across the fibres, lane by lane as [`FiberFrame::offset`], for unit vectors.
+    /// Returns the offsets across the fibres for unit vectors, lane by lane like [`FiberFrame::offset`].
     ///
-    /// - Shape: a hit per lane.
-    /// - Domain: unit vectors in the world. The offset is 0 where either lies along the fibre.
+    /// - Shape: one hit per lane.
+    /// - Domain: unit vectors in the world. If either vector lies along the fibre, the offset is 0.
     #[inline]
     #[must_use]
     pub fn offset(&self, normals: &Vec3x8, wo: &Vec3x8) -> f32x8 {
@@ -413,14 +417,14 @@ impl FiberFrame8 {
             .fast_min(f32x8::ONE)
     }
 
-    /// World to fibre, each lane in its own frame.
+    /// Transforms vectors from the world to the fibres, each lane into its own frame.
     #[inline]
     #[must_use]
     pub fn to_local(&self, v: &Vec3x8) -> Vec3x8 {
         Vec3x::new(v.dot(self.u), v.dot(self.v), v.dot(self.w))
     }
 
-    /// Fibre to world, each lane out of its own frame.
+    /// Transforms vectors from the fibres to the world, each lane out of its own frame.
     #[inline]
     #[must_use]
     pub fn to_world(&self, v: &Vec3x8) -> Vec3x8 {
@@ -442,13 +446,13 @@ impl From<[FiberFrame; 8]> for FiberFrame8 {
     }
 }
 
-/// The part of `a` across the unit vector `u`.
+/// Returns the part of `a` across the unit vector `u`.
 #[inline]
 fn reject8(a: &Vec3x8, u: &Vec3x8) -> Vec3x8 {
     a.plus(u.scale(-a.dot(*u)))
 }
 
-/// At unit length; zero stays short.
+/// Scales each vector to unit length; a zero vector stays short.
 #[inline]
 fn unit8(a: &Vec3x8) -> Vec3x8 {
     a.scale(f32x8::splat(1.0) / a.dot(*a).max(f32x8::splat(1e-30)).sqrt())

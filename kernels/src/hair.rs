@@ -1,4 +1,4 @@
-//! The published model over any bell: its value, its densities and its albedo.
+//! The published model over any bell: its value, its samplers, its energy conservation and its albedo.
 
 pub(crate) mod albedo;
 mod angles;
@@ -31,23 +31,23 @@ use crate::params::HairDesc;
 use crate::simd::{Broadcast, Lanes, Scalar, Vec3x, lanes4};
 use crate::{HairParams, LobeMask, PerLobe};
 
-/// Cosine of the inclination below which a direction lies on the fibre's axis: value and density are 0 there, and a
-/// sample is discarded (section 3.3 of the paper).
+/// Cosine of the inclination below which a direction lies on the fibre's axis: there value and density are 0, and a sample is
+/// discarded (section 3.3 of the paper).
 pub const GRAZING: f32 = 1e-5;
 
-/// The artist-friendly model of Sadeghi et al. 2010 as Ou et al. 2012 state it, with the bell `B`, and the sampler
+/// The artist-friendly model of Sadeghi et al. 2010 as Ou et al. 2012 state it, with the bell `B` and the importance sampler that
 /// they publish.
 ///
-/// `S = sum of I M(theta_h) N(phi) / cos^2 theta_d` over R, TT, TRT-g and the glints. It is reciprocal. It does not
-/// conserve energy: see [`Conserving`](crate::Conserving) and [`Material::conserving_scale`](crate::Material::conserving_scale).
+/// `S = sum of I M(theta_h) N(phi) / cos^2 theta_d` over R, TT, TRT-g and the glints. The model is reciprocal but does not conserve
+/// energy: see [`Conserving`](crate::Conserving) and [`Material::conserving_scale`](crate::Material::conserving_scale).
 ///
-/// - Source: Ou et al. 2012, equation 1, table 2 and section 3.2, with the misprints of `ERRATA.md` mended.
+/// - Source: Ou et al. 2012, equation 1, table 2 and section 3.2, with the misprints listed in `ERRATA.md` corrected.
 /// - Units: value and density per steradian.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Published<B>(pub B);
 
 impl<B: Bell> Published<B> {
-    /// The constants of a material in any [`Precision`], of a description that is not checked.
+    /// Computes the constants of a material in any [`Precision`], from a description that is not checked.
     #[inline]
     #[must_use]
     pub fn constants<W: Precision>(&self, desc: &HairDesc<W::Lane>) -> PublishedMaterial<W::Lane> {

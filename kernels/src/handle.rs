@@ -1,4 +1,4 @@
-//! Handles of any model: a material and a BSDF, in one lane and in eight, over columns and over columns of hits.
+//! Handles of any model: materials and BSDFs, of one lane and of eight, with calls on columns and on columns of hits.
 
 mod bsdf;
 mod columns;
@@ -12,7 +12,7 @@ pub use dynamic::{DynBsdf, DynBsdf8};
 pub use hits::{HitsError, MaterialTable};
 pub use material::{Material, Material8};
 
-/// Traits of handles, which `derive` would bound by the model's.
+/// Traits of handles that `derive` would bound by the traits of the model.
 macro_rules! handle_impls {
     ($($name:ident $field:ident $constants:ident<$C:ty>;)*) => { $(
         impl<M: $crate::model::Model> Clone for $name<M> {
@@ -38,7 +38,7 @@ macro_rules! handle_impls {
 }
 use handle_impls;
 
-/// The level of a handle.
+/// Methods that select and return the level of a handle.
 macro_rules! level_methods {
     () => {
         /// Selects another instruction set; handles made from this one inherit it.
@@ -48,7 +48,7 @@ macro_rules! level_methods {
             Self { level, ..self }
         }
 
-        /// The instruction set that calls of eight lanes and of columns run on.
+        /// Returns the instruction set that calls of eight lanes and of columns run on.
         #[inline]
         #[must_use]
         pub const fn level(&self) -> Level {

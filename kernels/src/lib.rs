@@ -1,10 +1,10 @@
 //! Hair scattering, evaluated and sampled eight lanes at a time, without std and without an allocator.
 //!
-//! [`Published`] is the model of Sadeghi et al. 2010 as Ou et al. 2012 state it, with the importance sampler published there,
-//! and [`Matched`] is the same model with a sampler of lower variance. Their bells are Gaussians ([`Gaussian`]) or any other
+//! [`Published`] is the model of Sadeghi et al. 2010 as Ou et al. 2012 state it, with the importance sampler published there, and
+//! [`Matched`] is the same model with a sampler of lower variance. Their bells are Gaussians ([`Gaussian`]) or any other
 //! [`Bell`](model::Bell); the all-Cauchy variant is in the crate `hairis-variants`. Other scattering models implement
-//! [`LobeModel`](model::LobeModel) once over [`Lanes`](simd::Lanes), and get scalar calls, eight lanes, run-time dispatch and
-//! slices from it.
+//! [`LobeModel`](model::LobeModel) once over [`Lanes`](simd::Lanes), and get scalar calls, eight lanes, run-time dispatch and calls
+//! on columns from it.
 //!
 //! ```
 //! use glam::Vec3;
@@ -33,28 +33,29 @@
 //!
 //! # Conventions
 //!
-//! - **Frame.** A fibre has the frame (u, v, w): u along it from root to tip, v and w across. A direction is
-//!   `(sin theta, cos theta cos phi, cos theta sin phi)` in it, so that `theta`, in `[-pi/2, pi/2]`, is measured from
-//!   the normal plane. Vectors hold u, v, w in `x`, `y`, `z`. Both directions point away from the fibre.
-//! - **Directions.** `wo` is given (towards the viewer), `wi` is sampled (towards the light). Both are of unit length: builds with
-//!   debug assertions reject others.
+//! - **Frame.** A fibre has the frame (u, v, w): u along the fibre from root to tip, v and w across. In this frame a direction is
+//!   `(sin theta, cos theta cos phi, cos theta sin phi)`, so that `theta`, in `[-pi/2, pi/2]`, is measured from the normal plane.
+//!   Vectors hold u, v, w in `x`, `y`, `z`. Both directions point away from the fibre.
+//! - **Directions.** `wo` is given (towards the viewer), and `wi` is sampled (towards the light). Both are unit vectors: in builds
+//!   with debug assertions scalar calls reject a `wi` of another length, while [`Material::prepare`] accepts a `wo` of any length.
 //! - **Relative angles.** `phi = phi_o - phi_i`, `theta_h = (theta_i + theta_o) / 2`, `theta_d = (theta_o - theta_i) / 2`.
 //! - **Measures.** `L_o` is the integral of `L_i S cos theta_i` over `wi`. `eval` is S without the cosine, `pdf` is per
 //!   steradian, and `weight` is `S cos theta_i / pdf`. Angles are radians, and colours linear RGB.
-//! - **Lanes.** A lane is one sample: of the one shading point of a [`Bsdf`], or of the shading point in the same lane
-//!   of a [`Bsdf8`]. Lanes never mix.
-//! - **Totality.** [`HairParams::new`] rejects invalid parameters, and no later call returns a `Result`: for every finite input,
-//!   results are finite and not negative. Directions within [`GRAZING`](model::GRAZING) of the axis have value and density 0,
-//!   and a sample there is discarded. A discarded sample counts; do not draw it again.
-//! - **NaN and infinity.** Non-finite directions evaluate to zero. With a non-finite `wo`, or a NaN among the random numbers,
-//!   the sample is discarded: value, density and weight are 0, the slot is -1, and the direction may be NaN. An infinite random
-//!   number discards the sample or counts as the end of the range. The rule holds for every model and entry point (test
+//! - **Lanes.** A lane is one sample, of the shading point of a [`Bsdf`] or of the shading point in the same lane of a [`Bsdf8`].
+//!   Lanes never mix.
+//! - **Totality.** [`HairParams::new`] rejects invalid parameters, so that later calls return errors only for slices of different
+//!   lengths and for indices without a material. For every finite input, results are finite and not negative. Directions within
+//!   [`GRAZING`](model::GRAZING) of the axis have value and density 0, and a sample there is discarded. A discarded sample counts,
+//!   so do not draw it again.
+//! - **NaN and infinity.** Non-finite directions evaluate to zero. With a non-finite `wo`, or a NaN among the random numbers, the
+//!   sample is discarded: value, density and weight are 0, the slot is -1, and the direction may be NaN. An infinite random number
+//!   discards the sample or counts as the end of the range. The rule holds for every model and entry point (test
 //!   `inputs_that_are_no_numbers_are_black`).
 //! - **Energy.** The model is reciprocal but does not conserve energy, so wrap it in [`Conserving`] before path tracing
 //!   ([choices](guide::energy)).
 //! - **Bits.** The last bits of results depend on whether a level fuses multiply and add ([`Level::fuses`](simd::Level::fuses)), and
-//!   on nothing else of the machine or the build. Scalar calls and frames take no level and never fuse. The promise needs IEEE
-//!   single precision: x87 arithmetic (`i586`) rounds otherwise.
+//!   on nothing else of the machine or the build. Scalar calls and frames use no level and never fuse. The promise needs IEEE single
+//!   precision, because x87 arithmetic (`i586`) rounds differently.
 //!
 //! # Limits
 //!

@@ -1,7 +1,7 @@
-//! For authors of models: the traits, their inputs and results, and the parts that the models here are made of.
+//! For authors of models: traits, their inputs and results, and the parts that the built-in models are made of.
 //!
 //! Implement [`LobeModel`] for a model given by its lobes, [`Bell`] for another bell in the published model, and [`Model`] for
-//! one that computes several lobes together. Vectors are in [`simd`](crate::simd), elementary functions in [`math`].
+//! one that computes several lobes together. Vectors are in [`simd`](crate::simd), and elementary functions in [`math`].
 
 mod conserving;
 mod direction;
@@ -24,23 +24,23 @@ use crate::simd::{Broadcast, LaneStruct, Lanes, Path, Scalar, Schedule, Vec3x};
 use glam::{Vec3, Vec3A};
 use wide::f32x8;
 
-/// A scattering model, written once over [`Lanes`].
+/// Scattering model, written once over [`Lanes`].
 ///
-/// [`Material`](crate::Material) makes scalar calls, eight lanes (eight directions at one shading point, or eight shading points),
-/// run-time dispatch and slices of it. Authors implement [`LobeModel`], which needs less and gives a
-/// `Model`; this trait is for models that compute several lobes together, as the published one does.
+/// [`Material`](crate::Material) turns a model into scalar calls, calls of eight lanes (eight directions at one shading point, or
+/// eight shading points), run-time dispatch and calls on columns. Most authors implement [`LobeModel`], which needs less and
+/// provides a `Model`; this trait is for models that compute several lobes together, as the published one does.
 ///
 /// # What an implementation promises
 ///
 /// - Functions are total: for every finite input the results are finite and at least 0, and nothing panics.
-/// - A direction that is not finite is black: a `wo` with NaN or an infinity makes every value, density and albedo 0 and every
-///   sample discarded, a `wi` its own value and density 0; NaN among the uniform numbers discards the sample.
-/// - `sample` draws from the density that `eval` reports. A discarded sample has slot -1 and no value, pdf or weight; a
+/// - Non-finite directions evaluate to zero. A non-finite `wo` makes every value, density and albedo 0 and discards every sample,
+///   and a non-finite `wi` makes its own value and density 0. NaN among the uniform numbers discards the sample.
+/// - `sample` draws from the density that `eval` reports. A discarded sample has slot -1, and its value, pdf and weight are 0; the
 ///   model does not draw again.
-/// - `prepare_one` gives the bits of `prepare` of one lane, in every build. `restrict` does not use `mul_add`: it runs in lanes
-///   that may or may not fuse.
-/// - Every function over lanes is `#[inline(always)]`, and so is all it calls: the dispatched entry points then
-///   contain no call, and the model runs at the speed of ours. Array `map` and closures over lanes are calls.
+/// - `prepare_one` returns the bits that `prepare` returns for one lane, in every build. `restrict` does not use `mul_add`, because
+///   it runs in lanes that may or may not fuse.
+/// - Every function over lanes, and every function it calls, is `#[inline(always)]`, so that the dispatched entry points contain no
+///   call and the model runs as fast as the built-in ones. Array `map` and closures over lanes count as calls.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a scattering model",
     note = "a bell is part of one: `Published(Gaussian)`, `Matched::new(Gaussian)`"
@@ -56,54 +56,55 @@ pub trait Model: Copy {
     /// Constants that [`Conserving`] adds to those of a material: `[C; 0]` for none.
     type Fit<C: Scalar>: LaneStruct<Number = C, One = Self::Fit<f32>, Eight = Self::Fit<f32x8>>;
 
-    /// Names of the lobes, in slot order: at most [`Lobe::COUNT`].
+    /// Names of the lobes in slot order, at most [`Lobe::COUNT`] of them.
     const LOBES: &'static [&'static str];
-    /// Whether the parameters alone decide how much light returns, as albedos or absorption do: [`Conserving`] and
-    /// [`conserving`](Self::conserving) change nothing then.
+    /// True if the parameters alone limit how much light returns, as albedos or absorption do, so that [`Conserving`] and
+    /// [`conserving`](Self::conserving) change nothing.
     const CONSERVES: bool;
 
-    /// Whether [`integrates`](Self::integrates) is implemented.
+    /// True if [`integrates`](Self::integrates) is implemented.
     ///
-    /// Provided: no.
+    /// Provided: false.
     const INTEGRATES: bool = false;
 
-    /// The constants of a material.
+    /// Computes the constants of a material from its parameters.
     fn material(&self, params: &Self::Params) -> Self::Material<f32>;
 
-    /// Everything that depends on the material and the hit alone (section 3.3 of the paper).
+    /// Computes everything that depends on the material and the hit alone (section 3.3 of the paper).
     fn prepare<L: Lanes, C: Broadcast<L>>(
         material: &Self::Material<C>,
         hit: Hit<L>,
     ) -> Self::Prepared<L::Stored>;
 
-    /// Prepares one hit. A model whose lobes take the same steps may put them into lanes here.
+    /// Prepares one hit. A model whose lobes take the same steps may compute several lobes in the lanes of one vector here.
     #[inline(always)]
     fn prepare_one(material: &Self::Material<f32>, hit: Hit<f32>) -> Self::Prepared<f32> {
         Self::prepare::<f32, f32>(material, hit)
     }
 
-    /// The shading point with only the lobes of `lobes`: the others neither scatter nor are sampled.
+    /// Returns the shading point with only the lobes of `lobes`: the others neither scatter nor are sampled.
     fn restrict<C: Lanes>(prepared: &Self::Prepared<C>, lobes: LobeMask) -> Self::Prepared<C>;
 
-    /// Value and density of the direction `wi`.
+    /// Evaluates S and the density of sampling at the direction `wi`.
     fn eval<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>, wi: Vec3x<L>) -> Eval<L>;
 
-    /// Each lobe's value, colour and own density at `wi`.
+    /// Evaluates each lobe's value, colour and own density at `wi`.
     fn lobes<L: Lanes, C: Broadcast<L>>(
         prepared: &Self::Prepared<C>,
         wi: Vec3x<L>,
     ) -> PerLobe<LobeEval<L>>;
 
-    /// A direction drawn with three uniform numbers in `[0, 1)`. The first chooses the lobe, and may serve again.
+    /// Draws a direction by three uniform numbers in `[0, 1)`. The first number chooses the lobe, and may be used again within the
+    /// lobe.
     fn sample<L: Lanes, C: Broadcast<L>>(
         prepared: &Self::Prepared<C>,
         xi: [L; 3],
     ) -> SampleLanes<L>;
 
-    /// The shading point with each channel scaled so that no more light returns than arrives, in the lanes of the mask:
-    /// see [`Bsdf::conserving`](crate::Bsdf::conserving). Other lanes keep their bits.
+    /// Scales each channel of the shading point so that no more light returns than arrives, in the lanes of the mask: see
+    /// [`Bsdf::conserving`](crate::Bsdf::conserving). Other lanes keep their bits.
     ///
-    /// Provided: the shading point as it is, for models that [conserve energy](Self::CONSERVES) by their parameters.
+    /// Provided: returns the shading point unchanged, for models that [conserve energy](Self::CONSERVES) by their parameters.
     #[inline(always)]
     fn conserving<L: Lanes>(
         prepared: &Self::Prepared<L::Stored>,
@@ -112,7 +113,7 @@ pub trait Model: Copy {
         *prepared
     }
 
-    /// The constants of [`fitted`](Self::fitted) for a material.
+    /// Computes the constants of a material that [`fitted`](Self::fitted) reads.
     ///
     /// Provided: zeros.
     #[inline]
@@ -120,10 +121,10 @@ pub trait Model: Copy {
         LaneStruct::make(&Path::Root, &mut |_| 0.0)
     }
 
-    /// As [`conserving`](Self::conserving), by the constants of the material; the shading point as it is where they are
-    /// [`unfit`](Self::unfit).
+    /// Scales the shading point like [`conserving`](Self::conserving), but reads the constants of the material instead of
+    /// integrating the lobes. Where the constants are [`unfit`](Self::unfit), it returns the shading point unchanged.
     ///
-    /// Provided: the shading point as it is.
+    /// Provided: returns the shading point unchanged.
     #[inline(always)]
     fn fitted<L: Lanes, C: Broadcast<L>>(
         _fit: &Self::Fit<C>,
@@ -132,8 +133,8 @@ pub trait Model: Copy {
         *prepared
     }
 
-    /// 1 where the constants of [`fitted`](Self::fitted) are not accurate enough, so that [`conserving`](Self::conserving) has
-    /// to follow, else 0.
+    /// Returns 1 where the constants of [`fitted`](Self::fitted) are not accurate enough, so that [`conserving`](Self::conserving)
+    /// has to follow, and 0 elsewhere.
     ///
     /// Provided: 0.
     #[inline(always)]
@@ -141,8 +142,8 @@ pub trait Model: Copy {
         L::splat(0.0)
     }
 
-    /// 1 where [`conserving`](Self::conserving) has to follow [`prepare`](Self::prepare), else 0. Handles ask once per call and not
-    /// in `prepare`, whose registers an integral would take.
+    /// Returns 1 where [`conserving`](Self::conserving) has to follow [`prepare`](Self::prepare), and 0 elsewhere. Handles call this
+    /// once per call, outside `prepare`, because an integral there would take its registers.
     ///
     /// Provided: 0.
     #[inline(always)]
@@ -150,23 +151,23 @@ pub trait Model: Copy {
         L::splat(0.0)
     }
 
-    /// Directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
+    /// Returns the directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
     fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>) -> PerLobe<[L; 3]>;
 }
 
-/// The hit of a ray on a fibre: the direction it came from, and its offset from the axis.
+/// Hit of a ray on a fibre: the direction towards the viewer, and the offset from the fibre's axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit<L = f32> {
-    /// Towards the viewer, in the fibre's frame, unit.
+    /// Direction towards the viewer, in the fibre's frame, unit.
     pub wo: Vec3x<L>,
-    /// Offset across the fibre, in radii in `[-1, 1]`: the sine of the angle about u from the outward normal of the hit,
-    /// taken in the normal plane, to `wo`. Positive where a quarter turn from v to w leads from the normal towards `wo`
-    /// ([`FiberFrame::offset`](crate::FiberFrame::offset)). Models of the far field, such as the published one, ignore it.
+    /// Offset across the fibre, in radii in `[-1, 1]`: the sine of the angle about u from the outward normal of the hit, taken in
+    /// the normal plane, to `wo`. The offset is positive if a quarter turn from v to w leads from the normal towards `wo`
+    /// ([`FiberFrame::offset`](crate::FiberFrame::offset)). Far-field models, such as the published one, ignore it.
     pub h: L,
 }
 
 impl<L: Lanes> Hit<L> {
-    /// A hit off the axis; of eight lanes, one per lane.
+    /// Makes a hit at the offset `h` from the axis, or eight hits, one per lane.
     ///
     /// - Domain: `h` is clamped to `[-1, 1]`; NaN counts as 0.
     ///
@@ -188,7 +189,7 @@ impl<L: Lanes> Hit<L> {
 }
 
 impl Hit {
-    /// Every number [alone](crate::simd::Schedule::alone).
+    /// Reads every number [alone](crate::simd::Schedule::alone).
     #[inline(always)]
     pub(crate) fn alone(self) -> Self {
         Self {
@@ -202,10 +203,10 @@ impl Hit {
 pub type Hit8 = Hit<f32x8>;
 
 impl From<Vec3> for Hit {
-    /// A hit on the axis (`h` is 0).
+    /// Makes a hit on the axis (`h` is 0).
     ///
-    /// That is one of the hits that a near-field model, such as Chiang's, distinguishes, and not its far field: draw `h` per
-    /// hit, or give it by [`Hit::new`].
+    /// A near-field model, such as Chiang's, scatters differently at every offset, so that hits on the axis alone do not give its
+    /// far field: draw `h` per hit, or pass it to [`Hit::new`].
     #[inline(always)]
     fn from(wo: Vec3) -> Self {
         Self {
@@ -216,7 +217,7 @@ impl From<Vec3> for Hit {
 }
 
 impl From<Vec3A> for Hit {
-    /// A hit on the axis (`h` is 0).
+    /// Makes a hit on the axis (`h` is 0).
     #[inline(always)]
     fn from(wo: Vec3A) -> Self {
         Self {
@@ -227,7 +228,7 @@ impl From<Vec3A> for Hit {
 }
 
 impl From<&Vec3x<f32x8>> for Hit8 {
-    /// Hits on the axes (`h` is 0).
+    /// Makes hits on the axes (`h` is 0).
     #[inline(always)]
     fn from(wo: &Vec3x<f32x8>) -> Self {
         Self {
@@ -238,27 +239,27 @@ impl From<&Vec3x<f32x8>> for Hit8 {
 }
 
 impl From<&Self> for Hit8 {
-    /// Copies hits by reference, so that vector code alone reads them.
+    /// Copies hits from a reference, so that only vector code reads them.
     #[inline(always)]
     fn from(hits: &Self) -> Self {
         *hits
     }
 }
 
-/// Value and density of a direction, per lane.
+/// Value and density of the BSDF for a direction, per lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eval<L = f32> {
-    /// The scattering function S, without the cosine, linear RGB, per steradian.
+    /// Scattering function S without the cosine, linear RGB, per steradian.
     pub value: [L; 3],
     /// Density of sampling the direction, per steradian.
     pub pdf: L,
 }
 
-/// Eight values and densities.
+/// Values and densities of eight directions, one per lane.
 pub type Eval8 = Eval<f32x8>;
 
 impl<L: Lanes> Eval<L> {
-    /// The lanes in their storage form.
+    /// Returns the lanes in their storage form.
     #[inline(always)]
     pub(crate) fn store(self) -> Eval<L::Stored> {
         Eval {
@@ -269,11 +270,11 @@ impl<L: Lanes> Eval<L> {
 }
 
 impl Eval8 {
-    /// One lane.
+    /// Returns the value and the density of one lane.
     ///
     /// # Panics
     ///
-    /// If `lane` is above 7.
+    /// Panics if `lane` is above 7.
     #[inline]
     #[must_use]
     pub fn lane(&self, lane: usize) -> Eval {
@@ -284,10 +285,10 @@ impl Eval8 {
     }
 }
 
-/// One lobe at one direction, per lane.
+/// Value, colour and density of one lobe at a direction, per lane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LobeEval<L = f32> {
-    /// The lobe's part of S without its colour, per steradian: a spectral host applies its own.
+    /// The lobe's part of S without its colour, per steradian, so that a spectral host can apply its own colour.
     pub value: L,
     /// The lobe's colour, linear RGB: `value * color` summed over the lobes is S.
     pub color: [L; 3],
@@ -295,18 +296,18 @@ pub struct LobeEval<L = f32> {
     pub pdf: L,
 }
 
-/// One lobe at eight directions.
+/// Value, colour and density of one lobe at eight directions, one per lane.
 pub type LobeEval8 = LobeEval<f32x8>;
 
 impl<L: Lanes> LobeEval<L> {
-    /// A lobe at a direction.
+    /// Makes the result of a lobe at a direction from its value, colour and density.
     #[inline(always)]
     #[must_use]
     pub const fn new(value: L, color: [L; 3], pdf: L) -> Self {
         Self { value, color, pdf }
     }
 
-    /// No lobe: all 0.
+    /// Returns the result of an empty slot: value, colour and density are 0.
     #[inline(always)]
     #[must_use]
     pub fn none() -> Self {
@@ -314,7 +315,7 @@ impl<L: Lanes> LobeEval<L> {
         Self::new(zero, [zero; 3], zero)
     }
 
-    /// The lanes in their storage form.
+    /// Returns the lanes in their storage form.
     #[inline(always)]
     pub(crate) fn store(self) -> LobeEval<L::Stored> {
         LobeEval {
@@ -325,24 +326,24 @@ impl<L: Lanes> LobeEval<L> {
     }
 }
 
-/// A sampled direction, per lane; value, pdf and weight 0 and slot -1 where it was discarded. What models return; users
-/// see [`Sample`] and [`Sample8`].
+/// Sampled direction, as models return it, per lane. A discarded lane has value, pdf and weight 0 and slot -1; users read [`Sample`]
+/// and [`Sample8`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleLanes<L> {
-    /// Towards the light, in the fibre's frame, unit.
+    /// Direction towards the light, in the fibre's frame, unit.
     pub wi: Vec3x<L>,
     /// S at `wi`, without the cosine, linear RGB, per steradian.
     pub value: [L; 3],
     /// Density of `wi`, per steradian.
     pub pdf: L,
-    /// `value * cos theta_i / pdf`.
+    /// Throughput weight `value * cos theta_i / pdf`.
     pub weight: [L; 3],
-    /// Slot of the lobe that was chosen, as a number; -1 if the sample was discarded.
+    /// Slot of the chosen lobe as a number; -1 if the sample was discarded.
     pub slot: L,
 }
 
 impl<L: Lanes> SampleLanes<L> {
-    /// The lanes in their storage form.
+    /// Returns the lanes in their storage form.
     #[inline(always)]
     pub(crate) fn store(self) -> SampleLanes<L::Stored> {
         SampleLanes {
@@ -355,10 +356,10 @@ impl<L: Lanes> SampleLanes<L> {
     }
 }
 
-/// A direction sampled at one shading point.
+/// Direction sampled at one shading point, with its value, density and weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Towards the light, in the fibre's frame, unit.
+    /// Direction towards the light, in the fibre's frame, unit.
     pub wi: Vec3,
     /// S at `wi`, without the cosine, linear RGB, per steradian.
     pub value: [f32; 3],
@@ -366,12 +367,12 @@ pub struct Sample {
     pub pdf: f32,
     /// Throughput weight `value * cos theta_i / pdf`.
     pub weight: [f32; 3],
-    /// The lobe that was chosen; value and pdf are those of all lobes.
+    /// Chosen lobe. Value and pdf are sums over all lobes.
     pub lobe: Lobe,
 }
 
 impl Sample {
-    /// The sample of one lane; `None` if it was discarded.
+    /// Returns the sample of one lane, or `None` if the sample was discarded.
     #[inline]
     pub(crate) fn from_lanes(lanes: &SampleLanes<f32>) -> Option<Self> {
         let lobe = Lobe::from_number(lanes.slot)?;
@@ -385,13 +386,13 @@ impl Sample {
     }
 }
 
-/// Eight sampled directions: of one shading point, or one of each of eight.
+/// Eight sampled directions, of one shading point or of one shading point per lane.
 ///
 /// A discarded lane has value, pdf and weight 0 and slot -1, and counts as a sample whose contribution is 0.
 pub type Sample8 = SampleLanes<f32x8>;
 
 impl Sample8 {
-    /// The lanes that were not discarded: bit `i` for lane `i`.
+    /// Returns the lanes that were not discarded as a bit set: bit `i` for lane `i`.
     #[inline]
     #[must_use]
     pub fn live(&self) -> u8 {
@@ -402,11 +403,11 @@ impl Sample8 {
         bits
     }
 
-    /// One lane; `None` if it was discarded.
+    /// Returns the sample of one lane, or `None` if the sample was discarded.
     ///
     /// # Panics
     ///
-    /// If `lane` is above 7.
+    /// Panics if `lane` is above 7.
     #[inline]
     #[must_use]
     pub fn lane(&self, lane: usize) -> Option<Sample> {

@@ -1,4 +1,4 @@
-//! Parameters of hair: validated widths, shifts and intensities.
+//! Hair parameters: validated widths, shifts and intensities, presets, and an artist's controls.
 
 use core::f32::consts::PI;
 
@@ -11,16 +11,16 @@ pub use artist::{ArtistControls, Glints, Highlight, Transmission};
 pub use error::{ParamError, Rule};
 pub use pigment::{melanin_absorption, melanin_concentrations, transmittance};
 
-/// Smallest width accepted, rad.
+/// Smallest width that [`HairParams::new`] accepts, in radians.
 pub const MIN_WIDTH: f32 = 1e-4;
-/// Largest width accepted, rad.
+/// Largest width that [`HairParams::new`] accepts, in radians.
 pub const MAX_WIDTH: f32 = PI;
 
-/// The parameters of the published model, not checked yet: set the fields that differ from the default and pass it to
-/// [`HairParams::new`]. `f32` for the kernels, `f64` for formulas; fields have the names of the paper and of files.
+/// Parameters of the published model, not checked yet. Set the fields that differ from the default and pass the description to
+/// [`HairParams::new`]. Kernels use `f32` and formulas `f64`; fields have the names of the paper and of files.
 ///
 /// - Source: Ou et al. 2012, section 3.1 and table 2 (after Sadeghi et al. 2010).
-/// - Units: angles in radians; intensities linear RGB. Lists of three are of R, TT and TRT.
+/// - Units: angles in radians; intensities linear RGB. Arrays of lobes hold R, TT and TRT.
 /// - Default: [`HairParams::brown`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
@@ -29,9 +29,9 @@ pub const MAX_WIDTH: f32 = PI;
     serde(deny_unknown_fields)
 )]
 pub struct HairDesc<T = f32> {
-    /// Longitudinal shifts, the centres of the lobes in `theta_h`, each in `[-pi/2, pi/2]`. The glints have that of TRT.
+    /// Longitudinal shifts, the centres of the lobes in `theta_h`, each in `[-pi/2, pi/2]`. The glints have the shift of TRT.
     pub alpha: [T; 3],
-    /// Longitudinal widths in `theta_h` (Gaussian deviation, Cauchy scale), each in `[1e-4, pi]`. The glints have that of TRT.
+    /// Longitudinal widths in `theta_h` (Gaussian deviation, Cauchy scale), each in `[1e-4, pi]`. The glints have the width of TRT.
     pub beta: [T; 3],
     /// Azimuthal width of TT, in `[1e-4, pi]`.
     pub gamma_tt: T,
@@ -41,16 +41,16 @@ pub struct HairDesc<T = f32> {
     pub phi_g: T,
     /// Intensity of R, linear RGB, each finite and at least 0.
     pub i_r: [T; 3],
-    /// Intensity of TT.
+    /// Intensity of TT, linear RGB, each finite and at least 0.
     pub i_tt: [T; 3],
-    /// Intensity of TRT, which the glints share.
+    /// Intensity of TRT, which the glints share, linear RGB, each finite and at least 0.
     pub i_trt: [T; 3],
-    /// Strength of the glints, a factor on `i_trt`, finite and at least 0.
+    /// Strength of the glints relative to `i_trt`, finite and at least 0.
     pub i_g: T,
 }
 
 impl<T: Copy> HairDesc<T> {
-    /// Converts every number of the description.
+    /// Converts every number of the description to another type or unit.
     #[inline]
     #[must_use]
     pub fn map<U>(&self, convert: impl Fn(T) -> U) -> HairDesc<U> {
@@ -69,10 +69,10 @@ impl<T: Copy> HairDesc<T> {
 }
 
 impl<T: Copy + core::ops::Mul<Output = T>> HairDesc<T> {
-    /// Multiplies all five widths by `factor`; the bells, the sampler and the energies follow.
+    /// Multiplies all five widths by `factor`; the bells, the sampler and the lobe energies follow the new widths.
     ///
-    /// The Cauchy variant is published with the Gaussian widths unchanged (1). 1.177 matches the half width of the
-    /// Gaussian, 0.798 its area.
+    /// The Cauchy variant is published with the Gaussian widths unchanged (1). A factor of 1.177 matches the half width of the
+    /// Gaussian, and 0.798 its area.
     #[inline]
     #[must_use]
     pub fn with_width_factor(self, factor: T) -> Self {
@@ -92,7 +92,7 @@ impl Default for HairDesc {
     }
 }
 
-/// Hair parameters that passed their checks: every model built on them is total.
+/// Hair parameters that passed the checks of [`new`](Self::new), so that every model built on them is total.
 ///
 /// ```
 /// use hairis::HairParams;
@@ -110,12 +110,12 @@ impl Default for HairDesc {
 pub struct HairParams(HairDesc);
 
 impl HairParams {
-    /// Checks `desc`.
+    /// Checks a description and returns the parameters.
     ///
     /// # Errors
     ///
-    /// The first field that is out of its range (see [`HairDesc`]), with its value; NaN and infinities never pass.
-    /// All intensities zero is legal: the model then evaluates to 0 and every sample is discarded.
+    /// Returns an error that holds the first field outside its range (see [`HairDesc`]) and its value; NaN and infinities are always
+    /// rejected. All intensities may be zero: the model then evaluates to 0 and every sample is discarded.
     #[inline]
     pub fn new(desc: &HairDesc) -> Result<Self, ParamError> {
         let d = desc;
@@ -136,19 +136,19 @@ impl HairParams {
         Ok(Self(*desc))
     }
 
-    /// The values that were checked.
+    /// Returns the description that was checked.
     #[inline]
     #[must_use]
     pub const fn desc(&self) -> &HairDesc {
         &self.0
     }
 
-    /// Multiplies every intensity by `factor`: with
-    /// [`Material::conserving_scale`](crate::Material::conserving_scale), hair that returns at most the light it receives.
+    /// Multiplies the intensities of R, TT and TRT by `factor`. With
+    /// [`Material::conserving_scale`](crate::Material::conserving_scale) the hair returns at most the light it receives.
     ///
     /// # Errors
     ///
-    /// If `factor` is negative or not finite, or a product overflows.
+    /// Returns an error if `factor` is negative or not finite, or if a product overflows.
     #[inline]
     pub fn scaled(&self, factor: f32) -> Result<Self, ParamError> {
         Rule::NotNegative.check("factor", &[factor])?;

@@ -1,16 +1,16 @@
-//! Uniform numbers from a random-number generator. The kernels take plain numbers, so any sequence works.
+//! Uniform numbers from a random-number generator. The kernels take plain numbers, so that any sequence works.
 
 use rand_core::Rng;
 use wide::f32x8;
 
-/// Three uniform numbers in `[0, 1 - 2^-24]`, for one sample.
+/// Draws three uniform numbers in `[0, 1 - 2^-24]`, for one sample.
 #[inline]
 #[must_use]
 pub fn xi<R: Rng + ?Sized>(rng: &mut R) -> [f32; 3] {
     [unit(rng), unit(rng), unit(rng)]
 }
 
-/// Three uniform numbers per lane, for eight samples: lane 0 draws its three first.
+/// Draws three uniform numbers per lane, for eight samples: first the three numbers of lane 0.
 #[inline]
 #[must_use]
 pub fn xi8<R: Rng + ?Sized>(rng: &mut R) -> [f32x8; 3] {
@@ -23,7 +23,7 @@ pub fn xi8<R: Rng + ?Sized>(rng: &mut R) -> [f32x8; 3] {
     lanes.map(f32x8::new)
 }
 
-/// The upper 24 bits as a fraction: every value is a multiple of `2^-24`, and 1 is not among them.
+/// Draws 24 bits as a fraction: every value is a multiple of `2^-24`, and 1 is not among them.
 #[inline]
 #[expect(clippy::cast_precision_loss, reason = "24 bits fit a float exactly")]
 fn unit<R: Rng + ?Sized>(rng: &mut R) -> f32 {

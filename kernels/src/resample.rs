@@ -1,28 +1,29 @@
-//! One ray for many candidates: resampled importance sampling of direct light (Talbot et al. 2005), with the balance
-//! heuristic between the BSDF's candidates and the light's.
+//! Resampled importance sampling of direct light (Talbot et al. 2005): one ray for many candidates, with the balance heuristic
+//! between the candidates of the BSDF and those of the light.
 //!
-//! A ray costs as much as tens of candidates. Draw `n_b` directions from the BSDF and `n_l` from the light, weigh each by the
-//! light that it would bring without occlusion, and trace the few that are chosen:
+//! A ray costs as much as tens of candidates. Draw `n_b` directions from the BSDF and `n_l` from the light, weigh each by the light
+//! that it would contribute without occlusion, and trace the few that are chosen:
 //!
 //! 1. **Propose.** [`Bsdf::propose_columns`] draws the BSDF's candidates; the host draws the light's.
-//! 2. **Look up.** The host finds the radiance of each direction, and the light's density there.
+//! 2. **Look up.** The host finds the radiance from each direction, and the light's density of the direction.
 //! 3. **Weigh.** [`Bsdf::weigh_columns`] gives each candidate its contribution `f = L S cos theta_i` and its weight `w`, the mean
 //!    of `f` over the channels by `n_b p_b + n_l p_l`.
-//! 4. **Choose.** [`choose`] picks `k` of them by one uniform number; equal choices are one ray. The direct light is the sum of
+//! 4. **Choose.** [`choose`] picks `k` of them by one uniform number; equal choices share one ray. The direct light is the sum of
 //!    `V * contribution` over the choices, V being visibility.
 //!
-//! [`Pool`] holds the columns of one hit. Eight hits at a time, a lane a hit, keep a [`Reservoir8`].
+//! [`Pool`] holds the columns of one hit. For eight hits at a time, one per lane, keep a [`Reservoir8`].
 //!
-//! # Unbiased, and when
+//! # When the estimate is unbiased
 //!
-//! - The estimate has the right mean for any `n_b`, `n_l` and `k` above 0, as long as some technique that proposes can draw
-//!   every direction that brings light. With `n_l` 0 the BSDF's density must be above 0 wherever `f` is; with `n_b` 0 the light's.
-//! - Resampling estimates all direct light. A path that goes on by a BSDF sample of its own must not add an emitter that it
-//!   meets, but with a [`Partition`]: candidates then come from the light alone, the estimate is the light technique's share,
-//!   and the emitter counts with the rest, `1 - w_l`.
-//! - Lights without an extent have no density: add them on their own.
-//! - Radiance that is NaN or below 0 counts as 0. Contributions and weights above 1e30 count as 1e30, so that no sum overflows:
-//!   infinite radiance is such a contribution.
+//! - The mean of the estimate is right for any `n_b`, `n_l` and `k` above 0, if every direction that contributes light can be drawn
+//!   by some technique that proposes. With `n_l` 0 the BSDF's density must be above 0 wherever `f` is, and with `n_b` 0 the light's
+//!   density.
+//! - Resampling estimates all direct light. A path that continues by a BSDF sample of its own must therefore not add an emitter that
+//!   it meets, unless a [`Partition`] is used. With a `Partition` candidates come from the light alone, the estimate is the light
+//!   technique's share, and the emitter counts with the rest, `1 - w_l`.
+//! - Lights without an extent have no density, so add them separately.
+//! - Radiance that is NaN or below 0 counts as 0. Contributions and weights above 1e30, such as those of infinite radiance, count as
+//!   1e30, so that no sum overflows.
 
 use crate::columns::{LengthError, VALUE_PDF, WI, XI, check_columns};
 use crate::handle::kernels::{Proposals, ProposalsOf, WeighOf, Weighs};
@@ -40,10 +41,10 @@ pub use choice::{Choice, Choices, choose};
 pub use pool::Pool;
 pub use reservoir::Reservoir8;
 
-/// The largest contribution and weight.
+/// Largest contribution and weight; larger ones are clamped.
 const MOST: f32 = 1e30;
 
-/// Numbers of candidates: what each technique proposes for one hit.
+/// Numbers of candidates that each technique proposes for one hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counts {
     /// Directions drawn from the BSDF.
@@ -52,23 +53,24 @@ pub struct Counts {
     pub light: u32,
 }
 
-/// Share of the light that resampling estimates.
+/// Share of the direct light that resampling estimates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Partition {
-    /// All of it.
+    /// All of the light.
     #[default]
     All,
-    /// `w_l = p_l / (p_l + p_b)`; the path's next direction estimates the rest.
+    /// Balance heuristic: `w_l = p_l / (p_l + p_b)`. The path's next direction estimates the rest.
     Balance,
-    /// `w_l = p_l^2 / (p_l^2 + p_b^2)`.
+    /// Power heuristic: `w_l = p_l^2 / (p_l^2 + p_b^2)`. The path's next direction estimates the rest.
     Power,
 }
 
 impl Partition {
-    /// The share of the light technique, `w_l`, for the densities of the light and of the BSDF at a direction. An emitter that
-    /// a path meets by its BSDF sample counts with `1 - w_l`; where resampling estimates [`All`](Self::All) it does not count.
+    /// Returns the share of the light technique, `w_l`, for the densities of the light and of the BSDF at a direction. An emitter
+    /// that a path meets by its BSDF sample counts with `1 - w_l`; if resampling estimates [`All`](Self::All), the emitter does not
+    /// count.
     ///
-    /// - Range: `[0, 1]`. Without a density of the light it is 0, but for `All`.
+    /// - Range: `[0, 1]`. Without a density of the light the share is 0, except for `All`.
     #[inline]
     #[must_use]
     pub fn light_share(self, pdf_light: f32, pdf_bsdf: f32) -> f32 {
@@ -79,7 +81,7 @@ impl Partition {
 #[inline(always)]
 fn share<L: Lanes>(partition: Partition, pdf_light: L, pdf_bsdf: L) -> L {
     let one = L::splat(1.0);
-    // As far as squares go.
+    // As large as squares allow.
     let ratio =
         L::quotient(pdf_bsdf, L::splat(f32::MIN_POSITIVE).max(pdf_light)).min(L::splat(1e18));
     match partition {
@@ -89,7 +91,7 @@ fn share<L: Lanes>(partition: Partition, pdf_light: L, pdf_bsdf: L) -> L {
     }
 }
 
-/// How candidates are weighed.
+/// Constants by which candidates are weighed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Weighing {
     counts: [f32; 2],
@@ -108,7 +110,7 @@ impl Weighing {
         }
     }
 
-    /// Contribution and weight of a direction whose S is `value`.
+    /// Computes contribution and weight of a direction whose S is `value`.
     #[inline(always)]
     pub(crate) fn weigh<L: Lanes>(
         self,
@@ -141,42 +143,43 @@ impl Weighing {
     }
 }
 
-/// `x` where it is above 0, at most the largest number that counts.
+/// Returns `x` where it is above 0, clamped to the largest number that counts, and 0 elsewhere.
 #[inline(always)]
 fn positive<L: Lanes>(x: L) -> L {
     L::keep(L::splat(0.0).lt(x), x).min(L::splat(MOST))
 }
 
-/// Candidates of one hit by column, as the host looked them up.
+/// Candidates of one hit by column, with the radiance and density that the host looked up.
 #[derive(Clone, Copy, Debug)]
 pub struct CandidateColumns<'a> {
-    /// Towards the light, in the fibre's frame: u, v, w. Those of discarded samples are 0.
+    /// Direction towards the light, in the fibre's frame: u, v, w. For a discarded sample it is 0.
     pub wi: [&'a [f32]; 3],
-    /// Radiance from there, linear RGB, without visibility; times the path's throughput if that is to decide as well.
+    /// Radiance from the direction, linear RGB, without visibility; multiply it by the path's throughput if that is to affect the
+    /// choice.
     pub radiance: [&'a [f32]; 3],
-    /// The light's density of proposing the direction, per steradian, whichever technique did.
+    /// The light's density of proposing the direction, per steradian, whichever technique proposed it.
     pub pdf_light: &'a [f32],
 }
 
-/// Output of [`Bsdf::weigh_columns`]: one entry per candidate.
+/// Output of [`Bsdf::weigh_columns`], one entry per candidate.
 #[derive(Debug)]
 pub struct WeightColumns<'a> {
-    /// Light that the direction would bring, `L S cos theta_i`, linear RGB, without visibility.
+    /// Light that the direction would contribute, `L S cos theta_i`, linear RGB, without visibility.
     pub contribution: [&'a mut [f32]; 3],
-    /// Weight of the candidate; 0 where it brings nothing.
+    /// Weight of the candidate; 0 if it contributes nothing.
     pub weight: &'a mut [f32],
 }
 
-/// Eight weighed candidates.
+/// Contributions and weights of eight candidates, one per lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weighed8 {
-    /// Light that the direction would bring, `L S cos theta_i`, linear RGB, without visibility.
+    /// Light that the direction would contribute, `L S cos theta_i`, linear RGB, without visibility.
     pub contribution: [f32x8; 3],
-    /// Weight of the candidate; 0 where it brings nothing.
+    /// Weight of the candidate; 0 if it contributes nothing.
     pub weight: f32x8,
 }
 
-/// Names of the slices of candidates, and of weights.
+/// Names of the slices of candidates.
 const CANDIDATE: [&str; 7] = [
     "wi.u",
     "wi.v",
@@ -207,8 +210,8 @@ const WEIGHT: [&str; 4] = [
 ];
 
 impl Weighed8 {
-    /// Candidates whose values and densities the host has, for densities that are not the model's own: a mixture with another
-    /// technique, say. Otherwise [`Bsdf8::weigh8`] and [`Bsdf::weigh_columns`] do it in one pass.
+    /// Weighs candidates whose values and densities the host has already, for densities other than the model's own, such as those of
+    /// a mixture with another technique. Otherwise [`Bsdf8::weigh8`] and [`Bsdf::weigh_columns`] evaluate and weigh in one pass.
     #[inline]
     #[must_use]
     pub fn new(
@@ -229,7 +232,7 @@ impl Weighed8 {
     }
 }
 
-/// Columns of weights from columns of evaluations.
+/// Row that weighs columns of evaluations.
 #[derive(Clone, Copy)]
 struct WeighEvals(Weighing);
 
@@ -242,17 +245,17 @@ impl Row<11, 4> for WeighEvals {
     }
 }
 
-/// Contributions and weights of candidates whose values and densities the host has: `evals` are red, green, blue and the density.
+/// Weighs candidates whose values and densities the host has already; `evals` are red, green, blue and the density.
 ///
-/// The bits are those of [`Bsdf::weigh_columns`] if the values are those of [`Bsdf::eval_columns`] on the same level: a host of
-/// many models needs this once, and no kernel of weights per model.
+/// The bits are those of [`Bsdf::weigh_columns`] if the values are those of [`Bsdf::eval_columns`] on the same level. A host of many
+/// models therefore compiles this once, instead of a kernel of weights per model.
 ///
-/// Candidates may be at hits of their own: weigh what [`Material::eval_hits`](crate::Material::eval_hits) gave. The second pass adds a
-/// tenth to its time.
+/// Candidates may be at hits of their own: weigh the results of [`Material::eval_hits`](crate::Material::eval_hits). The second pass
+/// adds a tenth to the time of that call.
 ///
 /// # Errors
 ///
-/// If the columns differ in length; nothing is written then.
+/// Returns an error, and writes nothing, if the columns differ in length.
 ///
 /// ```
 /// use hairis::columns::EvalColumns;
@@ -301,12 +304,12 @@ pub fn weigh_evals(
 }
 
 impl<M: Model> Bsdf<M> {
-    /// Candidates of the BSDF: as [`sample_columns`](Self::sample_columns), directions alone. Those of discarded samples are 0,
-    /// which weighs nothing.
+    /// Draws the BSDF's candidates, like [`sample_columns`](Self::sample_columns) but directions alone. A discarded sample gives the
+    /// direction 0, whose weight is 0.
     ///
     /// # Errors
     ///
-    /// If the columns differ in length; nothing is written then.
+    /// Returns an error, and writes nothing, if the columns differ in length.
     #[inline]
     pub fn propose_columns(&self, xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError> {
         clean_upper_halves();
@@ -316,11 +319,11 @@ impl<M: Model> Bsdf<M> {
         Ok(())
     }
 
-    /// Contributions and weights of the candidates of one hit, proposed by either technique.
+    /// Computes contributions and weights of the candidates of one hit, whichever technique proposed them.
     ///
     /// # Errors
     ///
-    /// If the columns differ in length; nothing is written then.
+    /// Returns an error, and writes nothing, if the columns differ in length.
     #[inline]
     pub fn weigh_columns(
         &self,
@@ -345,7 +348,7 @@ impl<M: Model> Bsdf<M> {
 }
 
 impl<M: Model> Bsdf8<M> {
-    /// A candidate of the BSDF for each hit; 0 where the sample was discarded.
+    /// Draws a candidate of the BSDF for each hit; the direction is 0 where the sample was discarded.
     #[inline]
     #[must_use]
     pub fn propose8(&self, xi: &[f32x8; 3]) -> Vec3x8 {
@@ -355,7 +358,7 @@ impl<M: Model> Bsdf8<M> {
         })
     }
 
-    /// Contribution and weight of a candidate for each hit, from the light's radiance and density there.
+    /// Computes contribution and weight of a candidate for each hit, from the radiance and the light's density of its direction.
     #[inline]
     #[must_use]
     pub fn weigh8(

@@ -1,15 +1,14 @@
-//! The vector layer: lanes, their backends, run-time dispatch and columns. It holds arithmetic, masks and table look-up
-//! by index, and nothing of any model.
+//! Vector layer: lanes, their backends, run-time dispatch and columns. It holds arithmetic, masks and table look-up by index, and
+//! nothing of any model.
 //!
 //! # Soundness
 //!
-//! Functions of [`Lanes`] are safe, although some backends execute instructions that a CPU may
-//! lack. The types of these backends are private, and no public item names one: neither as a bound
-//! nor as an associated type (the lints `private_bounds` and `private_interfaces` are errors here).
-//! Other crates meet them only as the parameter of [`Kernel::run`] and [`Row::row`]. A
-//! [`Level`] calls these, and exists only where its instructions were found. Code that a kernel keeps, such as a pointer to a
-//! function over its lanes, may run later and on another thread: the CPU has the instructions for
-//! as long as the process runs (test `lanes_work_outside_the_call_that_they_came_from`).
+//! Functions of [`Lanes`] are safe, although some backends execute instructions that a CPU may lack. The types of these backends are
+//! private, and no public item names one, neither as a bound nor as an associated type (the lints `private_bounds` and
+//! `private_interfaces` are errors here). Other crates meet the types only as the parameter of [`Kernel::run`] and [`Row::row`]. A
+//! [`Level`] calls these functions, and exists only where its instructions were found. Code that a kernel keeps, such as a pointer
+//! to a function over its lanes, may run later and on another thread, because the CPU has the instructions for as long as the
+//! process runs (test `lanes_work_outside_the_call_that_they_came_from`).
 //!
 //! A backend cannot be named:
 //!
@@ -17,8 +16,7 @@
 //! let one = <hairis::simd::avx2::Avx2 as hairis::simd::Lanes>::splat(1.0);
 //! ```
 //!
-//! Inference does not find one either, neither from the numbers that it reads nor from those that
-//! it stores:
+//! Inference does not find a backend either, neither from the numbers that it reads nor from those that it stores:
 //!
 //! ```compile_fail,E0283
 //! use hairis::simd::{Broadcast, f32x8};
@@ -33,7 +31,7 @@
 //! let one = one();
 //! ```
 //!
-//! No other crate adds lanes:
+//! Other crates cannot add lanes:
 //!
 //! ```compile_fail,E0277
 //! #[derive(Clone, Copy, Debug)]
@@ -74,5 +72,5 @@ pub(crate) use lanes::fresh_lanes3;
 pub use lanes::{Broadcast, Lanes, Scalar, lanes3, lanes4, store3, store4};
 pub use pair::Pair;
 pub use schedule::Schedule;
-/// Eight lanes in memory: the vector of the crate `wide`.
+/// Eight lanes in memory: the vector type of the crate `wide`.
 pub use wide::f32x8;

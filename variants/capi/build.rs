@@ -1,4 +1,4 @@
-//! Names the shared library by the version of its interface: cargo alone sets no SONAME, and a program would then record the
+//! Names the shared library by the version of its interface. Cargo alone sets no SONAME, and a program would then record the
 //! path of the library that it was linked with.
 
 fn main() {

@@ -1,4 +1,4 @@
-//! The all-Cauchy variant: a bell with wider tails that the published sampler follows exactly.
+//! All-Cauchy variant of the published model: a bell with wider tails, which the published sampler follows exactly.
 
 use core::f32::consts::FRAC_PI_2;
 use hairis::model::math::{atan_unit, tan_half_turn};
@@ -7,10 +7,10 @@ use hairis::params::Rule;
 use hairis::simd::Lanes;
 use hairis::{Matched, ParamError, Published};
 
-/// The bell `1 / (1 + s)`, a Cauchy whose scale is the width: every Gaussian of the published model becomes this.
+/// Cauchy bell `1 / (1 + s)`, whose scale is the width. It replaces every Gaussian of the published model.
 ///
 /// - Source: Ou et al. 2012, section 3.3 "Replacing Gaussian with Cauchy".
-/// - Widths: those of the Gaussian model times a factor, by default 1 as in the paper.
+/// - Widths: the widths of the Gaussian model times a factor, which is 1 by default, as in the paper.
 ///
 /// ```
 /// use glam::Vec3;
@@ -26,36 +26,36 @@ pub struct Cauchy {
 }
 
 impl Cauchy {
-    /// The Gaussian model's own widths: as in the paper, and within 0.5% of the least-squares best factor.
+    /// Bell with the widths of the Gaussian model, as in the paper; the factor is within 0.5% of the best by least squares.
     pub const PAPER: Self = Self { width_factor: 1.0 };
-    /// Both bells are half as high at the same distance: a factor of `sqrt(2 ln 2)`.
+    /// Bell that is half as high at the same distance as the Gaussian: a factor of `sqrt(2 ln 2)`.
     pub const HALF_WIDTH: Self = Self {
         width_factor: 1.177_410_0,
     };
-    /// Both bells have the same area over the whole line: a factor of `sqrt(2 / pi)`.
+    /// Bell that has the same area over the whole line as the Gaussian: a factor of `sqrt(2 / pi)`.
     pub const AREA: Self = Self {
         width_factor: 0.797_884_6,
     };
 
-    /// A bell whose widths are those of the Gaussian model times `width_factor`.
+    /// Makes a bell whose widths are the widths of the Gaussian model times `width_factor`.
     ///
     /// # Errors
     ///
-    /// If the factor is not in `[0.5, 4]`.
+    /// Returns an error if the factor is outside `[0.5, 4]`.
     #[inline]
     pub fn with_width_factor(width_factor: f32) -> Result<Self, ParamError> {
         Rule::Range([0.5, 4.0]).check("width_factor", &[width_factor])?;
         Ok(Self { width_factor })
     }
 
-    /// The model made of this bell.
+    /// Returns the model made of this bell, with the published sampler.
     #[inline]
     #[must_use]
     pub const fn model(self) -> Published<Self> {
         Published(self)
     }
 
-    /// The model made of this bell, with the matched sampler.
+    /// Returns the model made of this bell, with the matched sampler.
     #[inline]
     #[must_use]
     pub const fn matched(self) -> Matched<Self> {
@@ -64,7 +64,7 @@ impl Cauchy {
 }
 
 impl Default for Cauchy {
-    /// [`PAPER`](Self::PAPER).
+    /// Returns the bell of the paper, [`PAPER`](Self::PAPER).
     #[inline]
     fn default() -> Self {
         Self::PAPER
@@ -93,9 +93,9 @@ impl Bell for Cauchy {
     }
 }
 
-/// The integral is an angle, from the point of the interval that is nearest to the centre.
+/// The integral is an angle, measured from the point of the interval that is nearest to the centre.
 ///
-/// - Accuracy: the integral of an inverted point is within 3e-7 rad of the given one.
+/// - Accuracy: the integral up to an inverted point is within 3e-7 rad of the given integral.
 impl MatchedBell for Cauchy {
     const UNIT: f32 = 1.0;
 
@@ -106,7 +106,7 @@ impl MatchedBell for Cauchy {
 
     #[inline(always)]
     fn integral<L: Lanes>(origin: L, x: L) -> L {
-        // Sine and cosine, to a scale, of the angle from the origin, which is at most a right one.
+        // Sine and cosine, up to a common factor, of the angle from the origin, which is at most a right angle.
         let (sin, cos) = (x - origin, x.mul_add(origin, L::splat(1.0)));
         let across = sin.abs();
         let steep = cos.lt(across);

@@ -1,4 +1,4 @@
-//! The energy-conserving fibre of Marschner, d'Eon and Chiang.
+//! Energy-conserving fibre of Marschner, d'Eon and Chiang, in the near field and in the far field.
 
 mod far_field;
 mod fields;
@@ -16,23 +16,24 @@ use hairis::model::{Direction, LobeEval, LobeModel};
 use hairis::simd::{Broadcast, Lanes, Scalar};
 use hairis::{Hit, PerLobe};
 
-/// The near-field model of Chiang et al. 2016, which pbrt, Mitsuba, Cycles and `MaterialX` render.
+/// Near-field model of Chiang et al. 2016, which pbrt, Mitsuba, Cycles and `MaterialX` render.
 ///
-/// `S = sum of A_p M_p N_p / cos theta_i` over R, TT, TRT and the rest: attenuations `A_p` of Fresnel's equations and of
-/// absorption, longitudinal terms `M_p` of d'Eon et al. 2011, azimuthal terms `N_p` that are trimmed logistics.
+/// `S = sum of A_p M_p N_p / cos theta_i` over R, TT, TRT and the rest. The attenuations `A_p` follow from Fresnel's equations and
+/// from absorption, the longitudinal terms `M_p` are those of d'Eon et al. 2011, and the azimuthal terms `N_p` are trimmed logistics.
 ///
-/// - Lobes: "r", "tt", "trt" and "trrt+", which is all further paths, in slots 0 to 3.
-/// - Near field: it reads [`Hit::h`]. A host without `h` draws it uniformly per hit; `h = 0` is not the far field.
-/// - Energy: `S cos theta_i` integrates to `sum of A_p` for every `wo`, `h`, roughness and tilt: 1 without absorption. It is
-///   not reciprocal, as `A_p` depends on `theta_o` alone: light tracing has to use the adjoint.
-/// - Sampling: exact. Weights are `sum of A_p q_p` over `sum of w_p q_p`, at most 3, and 1 for clear hair.
-/// - Selection of a lobe: by the mean of `A_p` over the channels ([`Chiang::MEAN`], the default), or by its share in each of
-///   them ([`Chiang::BY_CHANNEL`]), which leaves a third of the variance of the worst channel of red hair.
+/// - Lobes: "r", "tt", "trt" and "trrt+", which stands for all further paths, in slots 0 to 3.
+/// - Near field: the model reads [`Hit::h`]. A host without `h` draws it uniformly per hit, because `h = 0` is not the far field.
+/// - Energy: `S cos theta_i` integrates to `sum of A_p` for every `wo`, `h`, roughness and tilt, which is 1 without absorption. The
+///   model is not reciprocal, because `A_p` depends on `theta_o` alone, so that light tracing has to use the adjoint.
+/// - Sampling: exact. Weights are `sum of A_p q_p` over `sum of w_p q_p`, with `q_p` the density of a lobe and `w_p` its
+///   probability. They are at most 3, and 1 for clear hair.
+/// - Selection of a lobe: by the mean of `A_p` over the channels ([`Chiang::MEAN`], the default), or by its share in each channel
+///   ([`Chiang::BY_CHANNEL`]). The latter leaves a third of the variance of the worst channel of red hair.
 /// - Source: Chiang et al. 2016; d'Eon et al. 2011 (`M_p`) and 2013 (its sampling); `ERRATA.md` of this package.
-/// - Accuracy: value, density and each lobe to `5e-6 + 5e-7 / min(sqrt(v_tt), s)`, further than 1e-3 rad from the axis: 1e-5 for
-///   roughnesses of .3, 3e-5 of .1, 3e-3 of 1e-3. The first part is the arithmetic's, the second the rounding of angles, about
-///   1e-7 rad, times the steepness of the lobe. From `exp(-12)` of the peak of `M_p` down it grows as the exponent does; about
-///   `2^-115` of the peak lobes end.
+/// - Accuracy: value, density and each lobe are accurate to `5e-6 + 5e-7 / min(sqrt(v_tt), s)`, further than 1e-3 rad from the axis:
+///   to 1e-5 for roughnesses of .3, to 3e-5 for .1, and to 3e-3 for 1e-3. The first term is the error of the arithmetic. The second
+///   is the rounding of angles, about 1e-7 rad, times the steepness of the lobe. Below `exp(-12)` of the peak of `M_p` the error
+///   grows as the exponent does, and lobes end at about `2^-115` of the peak.
 ///
 /// ```
 /// use glam::Vec3;
@@ -49,12 +50,12 @@ use hairis::{Hit, PerLobe};
 pub struct Chiang<const BY_CHANNEL: bool = false>;
 
 impl Chiang {
-    /// Lobes are chosen by the mean of their attenuation over the channels.
+    /// Model that chooses lobes by the mean of their attenuation over the channels.
     pub const MEAN: Self = Self;
 }
 
 impl Chiang<true> {
-    /// Lobes are chosen by their share in every channel.
+    /// Model that chooses lobes by their share of the attenuation in every channel.
     pub const BY_CHANNEL: Self = Self;
 }
 
@@ -118,7 +119,7 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
         sampling::sample(prepared, lobe, xi)
     }
 
-    /// Closed form: the attenuations.
+    /// Returns the attenuations, which are the albedos of the lobes in closed form.
     #[inline(always)]
     fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &ChiangPrepared<C>) -> PerLobe<[L; 3]> {
         let of = gather::attenuation;

@@ -1,17 +1,17 @@
-//! The published model and its variants in the registry: parameters and names.
+//! Registry entries of the published model and its variants: the fields of their parameters, and their names.
 
 use crate::{Cauchy, Field, Kind, Parameters, Registered, Values};
 use hairis::model::{MatchedBell, Precision};
 use hairis::params::{HairDesc, Rule};
 use hairis::{Gaussian, HairParams, Matched, ParamError, Published};
 
-/// One number per lobe.
+/// Shape of a field with one number for each of R, TT and TRT.
 const LOBES: Kind = Kind::Numbers(&["R", "TT", "TRT"]);
-/// Half a degree, rad.
+/// Half a degree in radians: the width of the lobes in narrow materials.
 const NARROW: f32 = 0.008_726_646;
 
-/// Random hair is that of everyday: widths of 1 to 30 degrees, shifts within 15 degrees, glints at 10 to 80 degrees and
-/// of strength 0.1 to 10, colours in `[0, 1)`.
+/// Random materials cover everyday hair: widths of 1 to 30 degrees, shifts within 15 degrees, glints at 10 to 80 degrees and
+/// of strength 0.1 to 10, and colours in `[0, 1)`.
 impl Parameters for HairParams {
     const FIELDS: &'static [Field] = &[
         Field::new(
@@ -109,11 +109,11 @@ impl Parameters for HairParams {
     }
 }
 
-/// The description that values of the fields of [`HairParams`] give, with numbers of any type; nothing is checked.
+/// Returns the description that the values of the fields of [`HairParams`] form, in any type of number. Nothing is checked.
 ///
 /// # Panics
 ///
-/// If the values are of another model.
+/// Panics if the values belong to the fields of another model.
 #[inline]
 #[must_use]
 pub fn hair_desc<T: Copy>(values: &Values<T>) -> HairDesc<T> {
@@ -130,11 +130,11 @@ pub fn hair_desc<T: Copy>(values: &Values<T>) -> HairDesc<T> {
     }
 }
 
-/// A bell that the registry has models of.
+/// Bell whose models are in the registry, with the published and with the matched sampler.
 pub trait RegisteredBell: MatchedBell + Send + Sync + 'static {
-    /// Name of the models.
+    /// Name of the models that are made of the bell.
     const NAME: &'static str;
-    /// The bell as it is registered.
+    /// Bell of the registered models.
     const BELL: Self;
 }
 
@@ -159,8 +159,7 @@ impl<B: RegisteredBell> Registered for Published<B> {
     }
 }
 
-/// Word of the matched sampler: `matched` for nine bands, the default, and `matched-` with their
-/// number for others.
+/// Word of the matched sampler: `matched` for the default of nine bands, and `matched-` followed by the number of bands otherwise.
 struct Word<const BANDS: usize>;
 
 impl<const BANDS: usize> Word<BANDS> {

@@ -14,19 +14,19 @@ use hairis::model::{Direction, LobeEval, LobeModel, Precision};
 use hairis::simd::{Broadcast, Choice, Lanes, Scalar, lane_struct, lanes3};
 use hairis::{Hit, PerLobe};
 
-/// The model of Kajiya & Kay 1989, normalised, in a reciprocal form and in that of the publication.
+/// Model of Kajiya & Kay 1989, normalised, in a reciprocal form and in the form of the publication.
 ///
 /// `S = kd / pi^2 + ks cos^p(theta_i + theta_o) / (2 pi B(p + 2))`; the published form has `B(p + 1) cos theta_i` in place of
-/// `B(p + 2)`. `B(n)` is the integral of `cos^n` over `[-pi/2, pi/2]`, and the cosine is 0 where it is negative.
+/// `B(p + 2)`. `B(n)` is the integral of `cos^n` over `[-pi/2, pi/2]`, and a negative cosine counts as 0.
 ///
 /// - Lobes: "diffuse" in slot 0, "specular" in slot 1.
-/// - Sampling: densities are exact. The diffuse lobe's is proportional to `cos theta_i`; the specular one draws
-///   `theta_i + theta_o` in proportion to `cos^p`, and its sign by the rest of the cosines. Azimuths are uniform.
-/// - Weights: at most `kd` over the diffuse lobe's probability plus `ks (p + 2) / (p + 1)` over the specular one's.
-/// - Source: Kajiya & Kay 1989, with the errors of later texts mended: `ERRATA.md` of this package.
-/// - Accuracy: value and density to 1e-5 for exponents up to 1000, further than 1e-3 rad from the axis, where `kd` is a fiftieth
-///   or more. The specular lobe alone: to `3e-6 + p (2.4e-7 tan x - 4e-7 ln cos x)`, `x = |theta_i + theta_o|`, the slope of
-///   `cos^p x` times the rounding of an angle and that of its exponent.
+/// - Sampling: densities are exact. The density of the diffuse lobe is proportional to `cos theta_i`. The specular lobe draws
+///   `theta_i + theta_o` in proportion to `cos^p`, and its sign in proportion to the remaining cosines. Azimuths are uniform.
+/// - Weights: at most `kd` over the probability of the diffuse lobe plus `ks (p + 2) / (p + 1)` over that of the specular lobe.
+/// - Source: Kajiya & Kay 1989, with corrections of the errors in later texts: see `ERRATA.md` of this package.
+/// - Accuracy: value and density are accurate to 1e-5 for exponents up to 1000, further than 1e-3 rad from the axis, where `kd` is
+///   a fiftieth or more. The specular lobe alone is accurate to `3e-6 + p (2.4e-7 tan x - 4e-7 ln cos x)`, `x = |theta_i + theta_o|`:
+///   the slope of `cos^p x` times the rounding of an angle, and the rounding of the exponent.
 ///
 /// ```
 /// use glam::Vec3;
@@ -40,23 +40,23 @@ use hairis::{Hit, PerLobe};
 pub struct KajiyaKay;
 
 lane_struct! {
-    /// The constants of a material of Kajiya and Kay's model.
+    /// Constants of a material of Kajiya and Kay's model.
     pub struct KajiyaKayMaterial {
         /// Diffuse albedo, linear RGB.
         kd: [C; 3],
         /// Specular albedo, linear RGB.
         ks: [C; 3],
-        /// Mean of the channels of both.
+        /// Mean of the channels of `kd` and of `ks`.
         mean: [C; 2],
         /// 1 for the reciprocal form, 0 for the published one.
         reciprocal: C,
-        /// From `log2 cos^2` to the argument of a Gaussian that is `cos^p`: `-p ln 2`.
+        /// Factor `-p ln 2` from `log2 cos^2` to the argument of a Gaussian that equals `cos^p`.
         exponent: C,
-        /// From `log2 (1 - xi)` to that of one that is `(1 - xi)^(2/p)`.
+        /// Factor from `log2 (1 - xi)` to the argument of a Gaussian that equals `(1 - xi)^(2/p)`.
         inv_exponent: C,
-        /// The specular value at its peak.
+        /// Peak of the specular value.
         peak: C,
-        /// The specular density but for its shape.
+        /// Constant factor of the specular density.
         density: C,
         /// Share of `sin^2 theta_o` in the estimate of the specular albedo.
         grazing: C,
@@ -64,24 +64,24 @@ lane_struct! {
 }
 
 lane_struct! {
-    /// The constants of a shading point of Kajiya and Kay's model.
+    /// Constants of a shading point of Kajiya and Kay's model.
     pub struct KajiyaKayPrepared {
         /// Sine and cosine of `theta_o`.
         theta_o: [C; 2],
-        /// Weights of the lobes.
+        /// Sampling weights of the lobes.
         weights: [C; 2],
-        /// The constants of the material.
+        /// Constants of the material.
         material: KajiyaKayMaterial<C>,
     }
 }
 
-/// `cos theta` squared for the reciprocal form, `cos theta` for the published one.
+/// Returns `cos theta` squared for the reciprocal form, and `cos theta` for the published form.
 #[inline(always)]
 fn power<L: Lanes>(reciprocal: L::Mask, cos: L) -> L {
     cos * L::select(reciprocal, cos, L::splat(1.0))
 }
 
-/// The constants of a material; the mask is set for the reciprocal form.
+/// Computes the constants of a material; the mask is set for the reciprocal form.
 #[inline]
 fn constants<W: Precision>(
     kd: [W::Lane; 3],
@@ -172,15 +172,15 @@ impl LobeModel for KajiyaKay {
         let reciprocal = c(0.5).lt(m.reciprocal.lanes());
 
         L::stage("cos^p of the sum of the inclinations");
-        // By the sine where that is small, as p magnifies what the cosine has lost.
+        // Uses the sine where it is small, because p magnifies the rounding of the cosine.
         let sin = sin_i.mul_add(cos_o, cos_i * sin_o);
         let cos = L::difference_of_products(cos_i, cos_o, sin_i, sin_o);
-        // At most 1, for directions too that are longer than they should be: no power overflows.
+        // The bell is at most 1 even for directions longer than unit length, so that no power overflows.
         let s = zero.max(log2_near_one(cos * cos, -(sin * sin)) * m.exponent.lanes());
         let bell = L::keep(zero.lt(cos), gaussian(s));
 
         L::stage("value and density of both lobes");
-        // The density over both signs of the sum; one division for it and for 1 / cos theta_i.
+        // Density over both signs of the sum; one division serves both the density and 1 / cos theta_i.
         let mirrored = zero.max(cos.mul_sub(cos_o, sin * sin_o));
         let both = power(reciprocal, cos_i) + power(reciprocal, mirrored);
         let inverse = L::quotient(one, both * cos_i);
@@ -205,8 +205,8 @@ impl LobeModel for KajiyaKay {
         let reciprocal = c(0.5).lt(prepared.material.reciprocal.lanes());
 
         L::stage("sum of the inclinations, by the polar method");
-        // The polar method for a power of the cosine: 2 for the diffuse lobe, p for the specular one. `rest` is what the
-        // squared radius of a point in the disk leaves of 1.
+        // The polar method for a power of the cosine, which is 2 for the diffuse lobe and p for the specular lobe. `rest` is 1
+        // minus the squared radius of a point in the disk.
         let (rest, radius_sq) =
             gaussian_and_complement(log2_one_plus(-xi[1]) * prepared.material.inv_exponent.lanes());
         let (rest, radius_sq) = (
@@ -218,7 +218,7 @@ impl LobeModel for KajiyaKay {
         let cos = (radius_sq * cos_turn).mul_add(cos_turn, rest).sqrt();
 
         L::stage("sign of the sum");
-        // By the cosine that the power leaves out.
+        // Each sign is chosen in proportion to the cosine that the power leaves out.
         let minus = cos.mul_add(cos_o, sin * sin_o);
         let plus = L::difference_of_products(cos, cos_o, sin, sin_o);
         let (kept, turned) = (
@@ -244,8 +244,8 @@ impl LobeModel for KajiyaKay {
         Direction::with_uniform_azimuth(theta, L::select(is_diffuse, xi[2], again))
     }
 
-    /// The diffuse lobe returns `kd`; the specular one by 32 nodes over the sum `x` of the inclinations, out to where `cos^p x`
-    /// is 1e-9 and the light is on the sphere. To 1e-6 of `ks`.
+    /// Returns `kd` for the diffuse lobe. The albedo of the specular lobe is a quadrature of 32 nodes over the sum `x` of the
+    /// inclinations, out to where `cos^p x` is 1e-9 and the light is on the sphere. Its accuracy is 1e-6 of `ks`.
     #[inline(always)]
     fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &KajiyaKayPrepared<C>) -> PerLobe<[L; 3]> {
         let (c, zero, half_turn) = (L::splat, L::splat(0.0), L::splat(FRAC_PI_2));

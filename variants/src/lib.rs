@@ -1,4 +1,4 @@
-//! Scattering models on top of the public traits of [`hairis`].
+//! Scattering models built on the public traits of [`hairis`], with a registry that lists them by name.
 //!
 //! | model | content | conserves energy | reciprocal | source |
 //! |---|---|---|---|---|
@@ -6,10 +6,9 @@
 //! | [`KajiyaKay`] | a diffuse cylinder and one cone of highlights | `kd + ks` of its parameters | one of two forms | Kajiya & Kay 1989 |
 //! | [`Chiang`] | near field, absorption in place of colours | yes | no | Chiang et al. 2016; d'Eon et al. 2011 |
 //!
-//! A model of your own needs no change in the kernels: `examples/lambert_fiber` is one. A model of
-//! this crate also has
-//! [`Parameters`], an implementation of [`Registered`], and a line in `registry.rs`, the only list of models. Hosts can then
-//! choose it at run time ([`ModelId`], [`AnyMaterial`]), and the harness and the benches include it.
+//! A model of your own needs no change in the kernels, as `examples/lambert_fiber` shows. A model of this crate also implements
+//! [`Registered`], has parameters that implement [`Parameters`], and has a line in `registry.rs`, the only list of models. Hosts can
+//! then choose the model at run time ([`ModelId`], [`AnyMaterial`]), and the harness and the benches include it.
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
 
@@ -34,13 +33,13 @@ pub use parameters::{Draw, Field, FieldError, Kind, Parameters, Values};
 pub use registry::{AnyBsdf, AnyBsdf8, AnyMaterial, AnyMaterial8};
 pub use registry::{ModelId, Registered, Visitor};
 
-/// The all-Cauchy variant of the published model, see [`Cauchy`].
+/// All-Cauchy variant of the published model, in which a [`Cauchy`] bell replaces every Gaussian.
 pub type AllCauchy = hairis::Published<Cauchy>;
 
-/// The all-Cauchy variant with the matched sampler, see [`hairis::Matched`].
+/// All-Cauchy variant of the published model with the matched sampler: see [`hairis::Matched`].
 pub type MatchedCauchy = hairis::Matched<Cauchy>;
 
-/// Examples of the package's README.
+/// Examples of the package's README, which run as documentation tests.
 #[cfg(all(doctest, feature = "any"))]
 #[doc = include_str!("../README.md")]
 #[derive(Debug)]

@@ -9,21 +9,21 @@ use core::fmt;
 use hairis::ParamError;
 use hairis::params::Rule;
 
-/// Shape of a field's value.
+/// Shape of a field's value: one number, several numbers, a colour or a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A number.
+    /// One number.
     Number,
-    /// Numbers, each with a label.
+    /// Several numbers, each with a label.
     Numbers(&'static [&'static str]),
-    /// Linear red, green and blue.
+    /// Linear RGB colour, as three numbers.
     Rgb,
-    /// One of these words; among numbers, its place in the list.
+    /// One of these words; among the numbers, a word is stored as its place in the list.
     Word(&'static [&'static str]),
 }
 
 impl Kind {
-    /// Count of numbers.
+    /// Returns the count of numbers that a value of this shape has.
     #[inline]
     #[must_use]
     pub const fn width(self) -> usize {
@@ -35,46 +35,46 @@ impl Kind {
     }
 }
 
-/// Range of a field's numbers in random materials.
+/// Range from which random materials draw the numbers of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Draw {
-    /// Smallest number, in units.
+    /// Smallest number, in multiples of `unit`.
     pub least: f32,
-    /// Largest number, in units.
+    /// Largest number, in multiples of `unit`.
     pub most: f32,
-    /// Unit: 1, or a degree in radians.
+    /// Unit of the range: 1, or a degree in radians.
     pub unit: f32,
-    /// Whether the logarithm is uniform, and not the number.
+    /// True if the logarithm is uniform rather than the number.
     pub log: bool,
 }
 
-/// A field of a model's parameters.
+/// Field of a model's parameters, as files, command lines and hosts present it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Field {
-    /// Name in files, in a [`ParamError`], and of the field of the description.
+    /// Name of the field in files, in a [`ParamError`] and in the description of the model.
     pub name: &'static str,
     /// Shape of the value.
     pub kind: Kind,
-    /// The rule that every number obeys; `None` for words.
+    /// Rule that every number of the field obeys; `None` for words.
     pub rule: Option<Rule>,
-    /// Unit of the numbers: "rad", or nothing.
+    /// Unit of the numbers: "rad", or an empty string.
     pub unit: &'static str,
-    /// A sentence for interfaces and documentation.
+    /// Sentence that describes the field in interfaces and documentation.
     pub doc: &'static str,
-    /// Whether it may be left out; its default is that of the parameters.
+    /// True if the field may be left out, and then has the default of the parameters.
     pub optional: bool,
-    /// The field it may take the place of: exactly one of such a group is given.
+    /// Field that this one may take the place of; exactly one field of such a group is given.
     pub instead_of: Option<&'static str>,
-    /// Range in random materials, which otherwise have the default.
+    /// Range of the numbers in random materials; without a range they are not drawn.
     pub draw: Option<Draw>,
-    /// Whether random materials draw it after all other fields.
+    /// True if random materials draw the field after all fields that are not late.
     pub late: bool,
-    /// Every number of it in a material whose lobes are so narrow that most directions lie in their tails.
+    /// Value of each number in a material whose lobes are so narrow that most directions lie in their tails.
     pub narrow: Option<f32>,
 }
 
 impl Field {
-    /// A field of numbers that obey `rule`: required, without a unit, and not drawn.
+    /// Makes a field of numbers that obey `rule`. The field is required, has no unit, and is not drawn in random materials.
     #[inline]
     #[must_use]
     pub const fn new(name: &'static str, kind: Kind, rule: Rule, doc: &'static str) -> Self {
@@ -84,7 +84,7 @@ impl Field {
         }
     }
 
-    /// A field of words: required, and drawn as any other.
+    /// Makes a field of words. The field is required, and random materials draw one of its words.
     #[inline]
     #[must_use]
     pub const fn word(name: &'static str, kind: Kind, doc: &'static str) -> Self {
@@ -102,7 +102,7 @@ impl Field {
         }
     }
 
-    /// With numbers in radians.
+    /// Declares that the numbers of the field are angles in radians.
     #[inline]
     #[must_use]
     pub const fn radians(self) -> Self {
@@ -112,7 +112,7 @@ impl Field {
         }
     }
 
-    /// The range of the numbers that are accepted: an interface's slider. `None` for words.
+    /// Returns the range of accepted numbers, for instance for a slider of an interface, or `None` for words.
     #[inline]
     #[must_use]
     pub const fn range(&self) -> Option<[f32; 2]> {
@@ -122,7 +122,7 @@ impl Field {
         }
     }
 
-    /// May be left out.
+    /// Declares that the field may be left out, in which case it has its default.
     #[inline]
     #[must_use]
     pub const fn optional(self) -> Self {
@@ -132,7 +132,7 @@ impl Field {
         }
     }
 
-    /// May take the place of `field`.
+    /// Declares that this field may take the place of `field`, so that exactly one of them is given.
     #[inline]
     #[must_use]
     pub const fn instead_of(self, field: &'static str) -> Self {
@@ -142,7 +142,7 @@ impl Field {
         }
     }
 
-    /// Uniform over `[least, most]` in random materials.
+    /// Sets the range of random materials to `[least, most]`, over which each number is uniform.
     #[inline]
     #[must_use]
     pub const fn uniform(self, least: f32, most: f32) -> Self {
@@ -157,7 +157,7 @@ impl Field {
         }
     }
 
-    /// Uniform in its logarithm over `[least, most]` in random materials.
+    /// Sets the range of random materials to `[least, most]`, over which the logarithm of each number is uniform.
     #[inline]
     #[must_use]
     pub const fn log_uniform(self, least: f32, most: f32) -> Self {
@@ -172,7 +172,7 @@ impl Field {
         }
     }
 
-    /// With the range of random materials in degrees; the value stays in radians.
+    /// Declares that the range of random materials is in degrees; the values themselves stay in radians.
     #[inline]
     #[must_use]
     pub const fn degrees(self) -> Self {
@@ -186,14 +186,14 @@ impl Field {
         Self { draw, ..self }
     }
 
-    /// In random materials, drawn after the fields that are not late.
+    /// Declares that random materials draw this field after the fields that are not late.
     #[inline]
     #[must_use]
     pub const fn late(self) -> Self {
         Self { late: true, ..self }
     }
 
-    /// With `narrow` for every number where lobes are to be narrow.
+    /// Sets the value that every number of the field has where lobes are to be narrow.
     #[inline]
     #[must_use]
     pub const fn narrow(self, narrow: f32) -> Self {
@@ -203,7 +203,8 @@ impl Field {
         }
     }
 
-    /// The place that `error` refuses: the field, and which of its numbers if it has several.
+    /// Finds the field that `error` refers to, and which of its numbers is at fault if the field has several. Returns `None` if no field
+    /// has the name in the error.
     #[inline]
     #[must_use]
     pub fn refused<'a>(
@@ -214,7 +215,7 @@ impl Field {
         Some((field, error.number()))
     }
 
-    /// Whether both may be given only in place of each other.
+    /// Returns true if the two fields may only be given in place of each other.
     #[inline]
     fn excludes(&self, other: &Self) -> bool {
         let head = |field: &Self| field.instead_of.unwrap_or(field.name);
@@ -222,7 +223,7 @@ impl Field {
     }
 }
 
-/// Checked parameters of a model, with the fields they are made of.
+/// Checked parameters of a model, with the fields that they are made of.
 ///
 /// ```
 /// use hairis::HairParams;
@@ -234,25 +235,25 @@ impl Field {
 /// assert_eq!((field.name, number), ("beta", Some(1)));
 /// ```
 pub trait Parameters: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
-    /// Every field, in the order of files: at most [`Values::MOST`] fields, and numbers in all.
+    /// Fields of the parameters, in the order of files: at most [`Values::MOST`] of them, with at most as many numbers in all.
     const FIELDS: &'static [Field];
-    /// Named parameters. The figures of this project are those of the first.
+    /// Parameters by name. The first of them are the material of this project's figures.
     const PRESETS: &'static [(&'static str, Self)];
 
-    /// The values. Of fields that stand for one another, only the one the parameters keep.
+    /// Returns the values of the fields. Of fields that replace each other, only the one that the parameters store has a value.
     fn values(&self) -> Values;
 
-    /// Checks values of every field, but for those that others stand for.
+    /// Makes parameters from the values of all fields after checking them. Of fields that replace each other, one value is enough.
     ///
     /// # Errors
     ///
-    /// The first value out of its range; [`Field::refused`] finds its place.
+    /// Returns an error for the first value out of its range; [`Field::refused`] finds the field that the error refers to.
     fn from_values(values: &Values) -> Result<Self, ParamError>;
 
     /// Multiplies every colour that scatters by `factor`; the energy-conserving fibre stays as it is.
     ///
     /// # Errors
     ///
-    /// If `factor` is negative or not finite, or a product overflows.
+    /// Returns an error if `factor` is negative or not finite, or if a product overflows.
     fn scaled(&self, factor: f32) -> Result<Self, ParamError>;
 }

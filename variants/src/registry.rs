@@ -1,8 +1,8 @@
-//! The only list of models.
+//! Registry of models: the only list of models in the project.
 //!
-//! A new model is a line of [`for_each_model!`] below, and beside its [`Model`] an implementation of [`Registered`], with
-//! [`Parameters`] for its parameters. Run-time handles, the harness and the benches then include it. Models that few programs need are
-//! lines of [`with_every_sampler!`], which the feature `every-sampler` adds, as they double the code.
+//! To add a model, implement [`Registered`] beside its [`Model`] and [`Parameters`] for its parameters, and add a line to
+//! [`for_each_model!`] below. Run-time handles, the harness and the benches then include the model. Models that few programs need are
+//! lines of [`with_every_sampler!`], which only the feature `every-sampler` adds because they double the code.
 
 #[cfg(feature = "any")]
 mod any;
@@ -22,38 +22,38 @@ use {
     hairis::{Bsdf, Bsdf8, Conserving, Hit, Hit8, LobeMask, Material, Material8},
 };
 
-/// A model of the list: its names.
+/// Model of the registry, with the names under which hosts find it.
 ///
-/// Types of one model with different samplers share a [`NAME`](Self::NAME); each has its own [`CHOICE`](Self::CHOICE).
+/// Types of one model that differ in their sampler share a [`NAME`](Self::NAME), and each has its own [`CHOICE`](Self::CHOICE).
 pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
-    /// Name of the model.
+    /// Name of the model, which types with different samplers share.
     const NAME: &'static str;
-    /// Field and word that select this among the entries of one name; the first entry of a name is its default.
+    /// Field and word that select this entry among the entries of its name; the first entry of a name is its default.
     const CHOICE: Option<(&'static str, &'static str)> = None;
-    /// The model as it is registered.
+    /// Value of the model that the registry uses.
     const MODEL: Self;
-    /// Whether it reads [`Hit::h`](hairis::Hit::h).
+    /// True if the model reads [`Hit::h`](hairis::Hit::h), the offset of a hit across the fibre.
     const NEAR_FIELD: bool = false;
-    /// Name of the lobes' colours in reports; `None` if they are not reported.
+    /// Name of the lobes' colours in reports; `None` if reports leave them out.
     const COLORS: Option<&'static str> = None;
 
-    /// The constants of a material in any [`Precision`], from values that are not checked: those of the fields that
-    /// [`Parameters::values`] gives. A word is its place in the list.
+    /// Computes the constants of a material in any [`Precision`], from values that are not checked. `values` must have the fields that
+    /// [`Parameters::values`] gives; a word is given as its place in the list of words.
     fn constants<W: Precision>(values: &Values<W::Lane>) -> Self::Material<W::Lane>;
 }
 
-/// Work on a model of the list as a type: see [`ModelId::visit`].
+/// Operation that is generic over the type of a model: see [`ModelId::visit`].
 pub trait Visitor {
-    /// Result of the work.
+    /// Result of the operation.
     type Output;
 
-    /// Does the work on the model `M`, which is [`ModelId::of::<M>()`](ModelId::of).
+    /// Performs the operation on the model `M`, whose identifier is [`ModelId::of::<M>()`](ModelId::of).
     fn visit<M: Registered>(self) -> Self::Output;
 }
 
 macro_rules! models {
     ($($(#[$doc:meta])* $variant:ident: $model:ty;)*) => {
-        /// A model of the list.
+        /// Identifier of a model of the registry, by which hosts choose the model at run time.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[non_exhaustive]
         pub enum ModelId {
@@ -61,10 +61,10 @@ macro_rules! models {
         }
 
         impl ModelId {
-            /// Every model, in the order of reports.
+            /// Every model of the registry, in the order of reports.
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
 
-            /// Calls `visitor` with the model's type.
+            /// Calls `visitor` with the type of this model, and returns its result.
             #[inline]
             pub fn visit<V: Visitor>(self, visitor: V) -> V::Output {
                 match self {
@@ -72,7 +72,7 @@ macro_rules! models {
                 }
             }
 
-            /// Name of the model; entries that differ in their sampler alone share it.
+            /// Returns the name of the model, which entries that differ in their sampler alone share.
             #[inline]
             #[must_use]
             pub const fn name(self) -> &'static str {
@@ -81,7 +81,7 @@ macro_rules! models {
                 }
             }
 
-            /// Field and word that select this among the entries of its name, if it has several.
+            /// Returns the field and the word that select this entry among the entries of its name, or `None` if it has no such field.
             #[inline]
             #[must_use]
             pub const fn choice(self) -> Option<(&'static str, &'static str)> {
@@ -90,7 +90,7 @@ macro_rules! models {
                 }
             }
 
-            /// Names of the lobes, in slot order.
+            /// Returns the names of the model's lobes, in the order of their slots.
             #[inline]
             #[must_use]
             pub const fn lobes(self) -> &'static [&'static str] {
@@ -99,7 +99,7 @@ macro_rules! models {
                 }
             }
 
-            /// Whether it reads [`Hit::h`](hairis::Hit::h).
+            /// Returns true if the model reads [`Hit::h`](hairis::Hit::h), the offset of a hit across the fibre.
             #[inline]
             #[must_use]
             pub const fn is_near_field(self) -> bool {
@@ -108,7 +108,7 @@ macro_rules! models {
                 }
             }
 
-            /// Name of the lobes' colours in reports, if they are reported.
+            /// Returns the name of the lobes' colours in reports, or `None` if reports leave them out.
             #[inline]
             #[must_use]
             pub const fn colors(self) -> Option<&'static str> {
@@ -117,7 +117,7 @@ macro_rules! models {
                 }
             }
 
-            /// Fields of the parameters.
+            /// Returns the fields of the model's parameters, in the order of files.
             #[inline]
             #[must_use]
             pub const fn fields(self) -> &'static [Field] {
@@ -126,7 +126,7 @@ macro_rules! models {
                 }
             }
 
-            /// Values of the default parameters.
+            /// Returns the values of the model's default parameters.
             #[inline]
             #[must_use]
             pub fn defaults(self) -> Values {
@@ -135,7 +135,7 @@ macro_rules! models {
                 }
             }
 
-            /// Values of the first of the [`presets`](Self::presets): the material that this project's figures are of.
+            /// Returns the values of the first of the [`presets`](Self::presets), which is the material of this project's figures.
             #[inline]
             #[must_use]
             pub fn measured(self) -> Values {
@@ -144,7 +144,7 @@ macro_rules! models {
                 }
             }
 
-            /// Named parameters.
+            /// Returns the name and the values of each preset of the model.
             #[inline]
             pub fn presets(self) -> impl Iterator<Item = (&'static str, Values)> + Clone {
                 let preset = move |index: usize| match self {
@@ -158,11 +158,11 @@ macro_rules! models {
 
         #[cfg(feature = "any")]
         impl ModelId {
-            /// The material of these values, as it is; [`AnyMaterial::conserving`] limits the light that it returns.
+            /// Makes the material of these values as it is; [`AnyMaterial::conserving`] limits the light that a material returns.
             ///
             /// # Errors
             ///
-            /// If a value is out of its range.
+            /// Returns an error that names the field if a value is out of its range.
             ///
             /// ```
             /// use hairis_variants::ModelId;
@@ -189,7 +189,7 @@ macro_rules! models {
     };
 }
 
-/// Calls `$callback!` with the list, a line `Variant: Type;` per model. Types are named as here: the caller imports them.
+/// Calls `$callback!` with the list, which has a line `Variant: Type;` per model. The caller imports the types under these names.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! for_each_model {
@@ -197,21 +197,21 @@ macro_rules! for_each_model {
         $crate::with_every_sampler! { $callback
             /// The published model with the published sampler.
             Gaussian: Published<Gaussian>;
-            /// The published model, sampler matched with nine bands.
+            /// The published model with the matched sampler of nine bands.
             GaussianMatched: Matched<Gaussian>;
             /// The all-Cauchy variant with the published sampler.
             Cauchy: AllCauchy;
-            /// The all-Cauchy variant, sampler matched with nine bands.
+            /// The all-Cauchy variant with the matched sampler of nine bands.
             CauchyMatched: Matched<Cauchy>;
             /// Kajiya and Kay's model.
             KajiyaKay: KajiyaKay;
-            /// The energy-conserving fibre, lobes chosen by their mean over the channels.
+            /// The energy-conserving fibre, whose lobes are chosen by their mean attenuation over the channels.
             Chiang: Chiang;
         }
     };
 }
 
-/// Calls `$callback!` with these models and those that few programs need.
+/// Calls `$callback!` with these models, followed by the models that few programs need.
 #[cfg(feature = "every-sampler")]
 #[doc(hidden)]
 #[macro_export]
@@ -219,15 +219,15 @@ macro_rules! with_every_sampler {
     ($callback:ident $($models:tt)*) => {
         $callback! {
             $($models)*
-            /// The published model, sampler matched with five bands.
+            /// The published model with the matched sampler of five bands.
             GaussianMatched5: Matched<Gaussian, 5>;
-            /// The published model, sampler matched with twenty-five bands.
+            /// The published model with the matched sampler of twenty-five bands.
             GaussianMatched25: Matched<Gaussian, 25>;
-            /// The all-Cauchy variant, sampler matched with five bands.
+            /// The all-Cauchy variant with the matched sampler of five bands.
             CauchyMatched5: Matched<Cauchy, 5>;
-            /// The all-Cauchy variant, sampler matched with twenty-five bands.
+            /// The all-Cauchy variant with the matched sampler of twenty-five bands.
             CauchyMatched25: Matched<Cauchy, 25>;
-            /// The energy-conserving fibre, lobes chosen by their share in each channel.
+            /// The energy-conserving fibre, whose lobes are chosen by their share of the attenuation in each channel.
             ChiangByChannel: Chiang<true>;
         }
     };
@@ -244,21 +244,21 @@ macro_rules! with_every_sampler {
 for_each_model! { models }
 
 impl ModelId {
-    /// The first entry of each name.
+    /// Returns the first entry of each name, in the order of [`ALL`](Self::ALL).
     #[inline]
     pub fn defaults_of_names() -> impl Iterator<Item = Self> + Clone {
         Self::ALL.iter().copied().filter(|id| id.is_default())
     }
 
-    /// Whether this is the first entry of its name.
+    /// Returns true if this is the first entry of its name, which is the default.
     #[inline]
     #[must_use]
     pub const fn is_default(self) -> bool {
         matches!(Self::find(self.name(), None), Some(first) if first as usize == self as usize)
     }
 
-    /// The entry of this name, with this word of its [`choice`](Self::choice); without a word, the first of the name. `ou` is
-    /// accepted for `published`.
+    /// Finds the entry with this name and with this word of its [`choice`](Self::choice). Without a word, returns the first entry of the
+    /// name. The word `ou` is accepted for `published`.
     ///
     /// ```
     /// use hairis_variants::ModelId;
@@ -288,11 +288,11 @@ impl ModelId {
         None
     }
 
-    /// The entry of a type, at compile time: `if const { ModelId::of::<M>().is_default() }` leaves no code of other models.
+    /// Returns the entry of a type, at compile time: `if const { ModelId::of::<M>().is_default() }` leaves no code of other models.
     ///
     /// # Panics
     ///
-    /// If the type is none of the list.
+    /// Panics if the registry has no entry for the type.
     #[inline]
     #[must_use]
     pub const fn of<M: Registered>() -> Self {
@@ -304,7 +304,7 @@ impl ModelId {
     }
 }
 
-/// Whether two names are equal, at compile time too.
+/// Returns true if two names are equal; unlike `==`, this works at compile time too.
 #[inline]
 const fn same(a: &str, b: &str) -> bool {
     let (a, b) = (a.as_bytes(), b.as_bytes());

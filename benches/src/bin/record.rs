@@ -1,7 +1,7 @@
 //! Turns a folder of Criterion results into a record: `record FOLDER`.
 //!
-//! Prints a CSV: first, as comments, the CPU, the compiler, the commit and the levels; then one row per bench, with the time
-//! per direction (`prepare`: per shading point; `math`: per argument) in ns: the median over Criterion's
+//! Prints a CSV. Comments at its beginning state the CPU, the compiler, the commit and the levels; then follows one row per bench.
+//! Times are in ns per direction, per shading point for `prepare`, and per argument for `math`. A row has the median over Criterion's
 //! samples, the bounds of its 95% confidence interval, and the median absolute deviation of a sample.
 
 use core::error::Error;
@@ -70,7 +70,7 @@ fn record(folder: &Path) -> Result<String, Box<dyn Error>> {
     Ok(text)
 }
 
-/// All benches in a folder: sort keys and rows.
+/// Appends the sort key and the row of every bench below a folder to `rows`.
 fn benches(folder: &Path, rows: &mut Vec<([String; 3], String)>) -> Result<(), Box<dyn Error>> {
     for entry in fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))? {
         let path = entry?.path();
@@ -133,7 +133,7 @@ fn output(program: &str, words: &[&str]) -> Result<String, Box<dyn Error>> {
     Ok(String::from_utf8(done.stdout)?)
 }
 
-/// Name of a folder for a CPU's name.
+/// Returns the name of a CPU in lower case with hyphens, as the name of a folder.
 fn slug(cpu: &str) -> String {
     let plain = cpu.replace("(R)", "").replace("(TM)", "").to_lowercase();
     let words = plain

@@ -1,30 +1,30 @@
-//! The arguments of all calls, drawn before anything is timed.
+//! Arguments of all calls, drawn before anything is timed.
 
 use glam::Vec3;
 use hairis::ParamError;
 use hairis_variants::{Parameters, Values};
 
-/// Directions per pass: packets of shading points with 16 samples each. With their numbers `xi` they take 21 KB.
+/// Number of directions per pass, enough for packets of shading points with 16 samples each. With their numbers `xi` they take 21 KB.
 pub const TIMED_DIRECTIONS: usize = 896;
 
-/// [`TIMED_DIRECTIONS`] directions and numbers, all lanes different, and eight sets of parameters.
+/// Inputs of the timed operations: [`TIMED_DIRECTIONS`] directions and numbers, all lanes different, and eight sets of parameters.
 #[derive(Clone, Debug)]
 pub struct TimedInputs<P = Values> {
     /// Directions towards the light.
     pub wi: Vec<Vec3>,
     /// Directions towards the viewer.
     pub wo: Vec<Vec3>,
-    /// Uniform numbers.
+    /// Triples of uniform random numbers.
     pub xi: Vec<[f32; 3]>,
-    /// Parameters of the lanes; the first are those of all operations on one material.
+    /// Parameters of the eight lanes; the first set is used by all operations on one material.
     pub params: [P; 8],
-    /// The default with lobes so narrow, half a degree on hair, that almost all directions lie in their far tails, where
-    /// numbers would be denormal if they were let.
+    /// Default parameters with lobes so narrow (half a degree on hair) that almost all directions lie in their far tails, where
+    /// intermediate results would be denormal if denormals were not avoided.
     pub narrow: P,
 }
 
 impl TimedInputs {
-    /// Makes the inputs with the parameters of a model.
+    /// Converts the parameters to those of a model, and checks the number of inputs.
     pub(super) fn typed<P: Parameters>(&self) -> Result<TimedInputs<P>, ParamError> {
         let Self {
             wi,

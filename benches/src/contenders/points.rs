@@ -1,4 +1,4 @@
-//! Shading points of their own: preparing one, and a few samples of it.
+//! Operations that prepare a shading point and draw a few samples at it.
 
 use super::{
     CONSERVING_HITS, Contenders, EIGHT, EIGHT_AT_ONE, Entrants, HITS, Implementations,
@@ -16,7 +16,7 @@ use hairis::simd::f32x8;
 use hairis::{Conserving, Material, Material8, Sample8};
 use hairis_reference::{Formulas, Reference};
 
-/// The first `N` samples of a packet.
+/// Packet of samples of which only the first `N` are answers.
 struct Leading<const N: usize>(Sample8);
 
 impl<const N: usize> Output for Leading<N> {
@@ -35,8 +35,8 @@ fn several<I: 'static, O: Output + 'static>(
     Box::new(Several::new(inputs, place, call))
 }
 
-/// A shading point and `N` samples of it, all on the same hair: each lane at its own point, or a point's samples in `P`
-/// packets, the last of which may have lanes to spare.
+/// Prepares shading points on one material and draws `N` samples at each. Each lane has a shading point of its own, or the samples of
+/// one shading point fill `P` packets, the last of which may have lanes to spare.
 pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
     inputs: &TimedInputs<M::Params>,
 ) -> Entrants {
@@ -54,7 +54,7 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
         .iter()
         .map(|eight| core::array::from_fn(|k| xi_packets(&eight.map(|xi| xi[k]))[0]))
         .collect();
-    // A packet holds the same sample of eight points; the directions are in the order of the points.
+    // A packet holds the same sample of eight points, whereas the directions are in the order of the points.
     let place = |i: usize| (i / (8 * N) * 8 + i % 8) * N + i / 8 % N;
     let mut contenders = Contenders::new(
         several(pairs(&arrays(wo), rows), in_turn, move |(wo, xi), keep| {
@@ -112,7 +112,7 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
     Ok((contenders, Truth::of_samples(points, &inputs.xi)))
 }
 
-/// Evaluations of rows of hits and directions on one material.
+/// Evaluates rows of hits and directions on one material.
 fn eval_hits<M: Model + 'static>(rows: &[[f32; 6]], material: Material<M>) -> Box<dyn Pass> {
     let call = move |[x, y, z, u, v, w]: [&[f32]; 6], [r, g, b, pdf]: [&mut [f32]; 4]| {
         let (wo, out) = (
@@ -127,7 +127,7 @@ fn eval_hits<M: Model + 'static>(rows: &[[f32; 6]], material: Material<M>) -> Bo
     Box::new(Slices::new(TIMED_DIRECTIONS, rows, call))
 }
 
-/// A call that samples rows of hits and uniform numbers.
+/// Makes a pass whose `call` samples rows of hits and uniform numbers.
 fn sample_rows(
     rows: &[[f32; 6]],
     call: impl Fn(HitColumns<'_>, [&[f32]; 3], SampleColumns<'_>) -> Result<(), LengthError> + 'static,
@@ -149,14 +149,14 @@ fn sample_rows(
     Box::new(Slices::new(TIMED_DIRECTIONS, rows, call))
 }
 
-/// Samples of rows of hits on one material.
+/// Samples rows of hits on one material.
 fn sample_hits<M: Model + 'static>(rows: &[[f32; 6]], material: Material<M>) -> Box<dyn Pass> {
     sample_rows(rows, move |hits, xi, out| {
         material.sample_hits(hits, xi, out)
     })
 }
 
-/// Samples of rows of hits on eight materials by turns.
+/// Samples rows of hits on eight materials in turn.
 fn sample_table<M: Model + 'static>(
     rows: &[[f32; 6]],
     materials: [Material<M>; 8],
@@ -167,7 +167,7 @@ fn sample_table<M: Model + 'static>(
             materials: &materials,
             index: &index,
         };
-        // No index is beyond the table; if one were, the answers would be found wrong.
+        // No index is beyond the table; if one were, the check of the answers would fail.
         match table.sample_hits(hits, xi, out) {
             Err(HitsError::Length(error)) => Err(error),
             _ => Ok(()),
@@ -175,7 +175,7 @@ fn sample_table<M: Model + 'static>(
     })
 }
 
-/// A shading point and an evaluation at it, all on the same hair.
+/// Prepares shading points on one material, and evaluates one direction at each.
 pub(super) fn eval<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let params = &inputs.params[0];
     let Implementations::<M> {
@@ -214,7 +214,8 @@ pub(super) fn eval<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
     ))
 }
 
-/// A shading point and one sample of it, each lane on hair of its own; packed beforehand, or once per packet.
+/// Prepares shading points and draws one sample at each. Every lane has a material of its own, packed once, or before each call if
+/// `pack_each`.
 pub(super) fn mixed<M: Formulas>(inputs: &TimedInputs<M::Params>, pack_each: bool) -> Entrants {
     let each = inputs.params.each_ref().map(Implementations::<M>::new);
     let (libm, std) = (

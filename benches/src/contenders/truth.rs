@@ -1,21 +1,21 @@
-//! Check of a contender's answers: a wrong kernel must not win.
+//! Check of the contenders' answers, so that a wrong kernel cannot come out as the fastest.
 
 use crate::check::{drawn, is_right, to_f64};
 use crate::task::Answer;
 use glam::Vec3;
 use hairis_reference::Reference;
 
-/// Correct answers for the directions of a pass, by the reference in `f64`.
+/// Correct answers for the directions of a pass, as the reference computes them in `f64`.
 #[derive(Debug)]
 pub struct Truth {
-    /// Each for as many directions.
+    /// Shading points, each of which answers for the same number of directions.
     points: Vec<Box<dyn Reference<f64>>>,
-    /// The direction given, or the one that a sample must come to; `None` if it must be discarded.
+    /// Given direction, or direction that a sample must have; `None` if the sample must be discarded.
     wi: Vec<Option<[f64; 3]>>,
 }
 
 impl Truth {
-    /// For directions that are given: as many, one after the other, at each point.
+    /// Returns the answers for given directions, of which every point has the same number, one point after the other.
     #[must_use]
     pub fn of_directions(points: Vec<Box<dyn Reference<f64>>>, wi: &[Vec3]) -> Self {
         Self {
@@ -24,7 +24,7 @@ impl Truth {
         }
     }
 
-    /// For samples: as many, one after the other, at each point.
+    /// Returns the answers for samples drawn with `xi`, of which every point has the same number, one point after the other.
     #[must_use]
     pub fn of_samples(points: Vec<Box<dyn Reference<f64>>>, xi: &[[f32; 3]]) -> Self {
         let per_point = xi.len() / points.len();
@@ -36,8 +36,8 @@ impl Truth {
         Self { points, wi }
     }
 
-    /// Share of the answers that are wrong; 1 if there are not as many as there should be. Answers that `conserve` energy have each
-    /// channel divided by its albedo where that is above 1.
+    /// Returns the share of wrong answers, or 1 if the number of answers is not the expected one. If `conserve`, each channel of an
+    /// answer must have been divided by its albedo where the albedo is above 1.
     #[must_use]
     pub fn wrong_share(&self, answers: &[Answer], conserve: bool) -> f64 {
         if answers.len() != self.wi.len() {
@@ -63,7 +63,7 @@ impl Truth {
     }
 }
 
-/// The factors on the channels that keep their albedo at most 1.
+/// Returns the factors on the channels that keep every albedo at most 1.
 fn factors(point: &dyn Reference<f64>) -> [f64; 3] {
     let lobes = point.albedo().0;
     [0, 1, 2].map(|c| {

@@ -1,4 +1,4 @@
-//! The entry points of hits on materials that conserve energy, as hosts are told to make them.
+//! Entry points for hits on materials that conserve energy, which is how hosts are advised to make them.
 
 use super::{Of, label};
 use crate::check::{Asked, Given};
@@ -21,8 +21,8 @@ impl<M: Formulas> Of<'_, M> {
         }
     }
 
-    /// Hits on the first preset that conserves energy by itself, so that the formulas give the answers. What a call computes does not
-    /// depend on the parameters.
+    /// Passes on the entry points on the first preset that conserves energy by itself, so that the formulas yield the expected answers.
+    /// The amount of work in a call does not depend on the parameters.
     fn hits_of<C: Model<Params = M::Params>>(&self, visitor: &mut impl Visitor, model: &C) {
         let inputs = self.inputs;
         let presets = M::Params::PRESETS;

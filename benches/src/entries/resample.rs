@@ -1,4 +1,4 @@
-//! The entry points of resampling.
+//! Entry points of resampling: proposals, weights, pools and reservoirs.
 
 use super::{Of, label};
 use crate::check::Given;
@@ -69,7 +69,7 @@ impl<M: Formulas> Of<'_, M> {
                     })
                 },
             );
-            // A pool's candidates: 32 of the BSDF, then 32 of the light.
+            // Candidates of a pool: 32 of the BSDF, then 32 of the light.
             let in_pool = |i: usize| {
                 let at = i / 64 * 32 + i % 32;
                 self.at_one(if i % 64 < 32 {

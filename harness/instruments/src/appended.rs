@@ -1,4 +1,4 @@
-//! Files that grow by whole records, and that one process at a time writes to.
+//! Files that grow by whole records, and to which only one process at a time writes.
 
 use crate::error::Error;
 use std::fs::{File, TryLockError};
@@ -6,23 +6,21 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-/// A file that is only ever appended to. The system frees it when the process ends, however it
-/// ends.
+/// File that is only ever appended to, locked for this process. The system releases the lock when the process ends, however it ends.
 #[derive(Debug)]
 pub struct Appended {
     path: PathBuf,
-    /// The cause once a record might be torn: nothing must follow it.
+    /// File, or the cause of a failed write: a record may then be torn, so nothing must follow it.
     file: Mutex<Result<File, io::Error>>,
 }
 
 impl Appended {
-    /// Opens a file, or makes an empty one. The caller reads it, and [cuts](Self::cut) off what is
-    /// not whole.
+    /// Opens a file, or makes an empty one, and locks it. The caller reads the file, and [cuts](Self::cut) off an incomplete record at
+    /// the end.
     ///
     /// # Errors
     ///
-    /// [`Error::Output`] if it cannot be written, [`Error::Part`] if another process is writing to
-    /// it.
+    /// Returns [`Error::Output`] if the file cannot be opened for writing, and [`Error::Part`] if another process is writing to it.
     pub fn open(path: &Path) -> Result<Self, Error> {
         let file = File::options()
             .append(true)
@@ -30,7 +28,7 @@ impl Appended {
             .read(true)
             .open(path)
             .map_err(Error::output(path))?;
-        // File systems without locks go without.
+        // On file systems without locks the file stays unlocked.
         if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
             return Err(Error::Part {
                 path: path.to_owned(),
@@ -47,17 +45,17 @@ impl Appended {
         }
     }
 
-    /// The file.
+    /// Returns the path of the file, as it was passed to [`open`](Self::open).
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Cuts off all but the first bytes, if there are more: records that are not whole.
+    /// Cuts the file off after the first `whole` bytes, if it is longer, to drop an incomplete record.
     ///
     /// # Errors
     ///
-    /// As [`append`](Self::append).
+    /// Returns the errors of [`append`](Self::append).
     pub fn cut(&self, whole: usize) -> Result<(), Error> {
         self.change(|file| {
             let whole = whole as u64;
@@ -68,11 +66,11 @@ impl Appended {
         })
     }
 
-    /// Appends records.
+    /// Appends records, which must be whole, to the end of the file.
     ///
     /// # Errors
     ///
-    /// [`Error::Output`] if they cannot be written, or earlier ones could not.
+    /// Returns [`Error::Output`] if the records cannot be written, or if an earlier write failed.
     pub fn append(&self, records: &[u8]) -> Result<(), Error> {
         self.change(|file| file.write_all(records))
     }
@@ -86,7 +84,7 @@ impl Appended {
         if let Err(cause) = file.as_mut().map_or(Ok(()), change) {
             *file = Err(cause);
         }
-        // Other threads fail by the same cause: whichever is reported names it.
+        // Other threads fail with the same cause, so that whichever error is reported names it.
         let copy = |cause: &io::Error| output(io::Error::new(cause.kind(), cause.to_string()));
         file.as_ref().map(|_| ()).map_err(copy)
     }
@@ -122,8 +120,7 @@ mod tests {
             .open(path)
             .expect("Linux has it");
         let file = Appended::of(path, full);
-        // Of several threads any may be the one whose error is reported: all of them name the
-        // cause.
+        // Any of several threads may be the one whose error is reported, so all of them name the cause.
         for _ in 0..3 {
             let error = file.append(b"one\n").expect_err("full").to_string();
             assert!(

@@ -1,4 +1,5 @@
-//! A table by columns, written as CSV and, with feature `parquet`, as Apache Parquet: the same content, the same bytes each time.
+//! Tables by columns, written as CSV and, with feature `parquet`, as Apache Parquet. Both have the same content, and the same bytes
+//! each time.
 
 #[cfg(feature = "parquet")]
 mod parquet;
@@ -7,14 +8,14 @@ use crate::stats::Estimate;
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-/// The values of a column.
+/// Values of a column.
 #[derive(Clone, Debug, PartialEq)]
 enum ColumnValues {
     /// Words, as UTF-8.
     Text(Vec<Cow<'static, str>>),
     /// Counts, as 32-bit integers.
     Whole(Vec<i32>),
-    /// Numbers in double precision; what is not finite is missing: an empty field, and a null.
+    /// Numbers in double precision; a number that is not finite is missing, as an empty field in CSV and a null in Parquet.
     Number(Vec<f64>),
 }
 
@@ -27,7 +28,7 @@ impl ColumnValues {
         }
     }
 
-    /// The field of a row in CSV.
+    /// Returns the value at `row` as a field of CSV.
     fn field(&self, row: usize) -> Cow<'_, str> {
         match self {
             Self::Text(values) if values[row].contains([',', '"', '\n', '\r']) => {
@@ -35,14 +36,14 @@ impl ColumnValues {
             }
             Self::Text(values) => (&*values[row]).into(),
             Self::Whole(values) => values[row].to_string().into(),
-            // The shortest digits that read back as the same number, with an exponent where it is far from 1.
+            // Shortest digits that read back as the same number, with an exponent for numbers far from 1.
             Self::Number(values) if values[row].is_finite() => format!("{:?}", values[row]).into(),
             Self::Number(_) => "".into(),
         }
     }
 }
 
-/// Named columns of one length.
+/// Table of named columns, all of which have the same length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Columns(Vec<(Cow<'static, str>, ColumnValues)>);
 
@@ -57,7 +58,7 @@ impl Columns {
         self
     }
 
-    /// Adds a column of numbers.
+    /// Adds a column of numbers, of which those that are not finite count as missing.
     #[must_use]
     pub fn number(
         self,
@@ -67,7 +68,7 @@ impl Columns {
         self.with(name, ColumnValues::Number(values.into_iter().collect()))
     }
 
-    /// Adds a column of figures, and one of their standard errors, whose name ends in `_se`.
+    /// Adds a column of figures, and a second one of their standard errors with `_se` appended to its name.
     #[must_use]
     pub fn estimate(self, name: &str, values: impl IntoIterator<Item = Estimate>) -> Self {
         let (figures, errors): (Vec<f64>, Vec<f64>) = values
@@ -78,7 +79,7 @@ impl Columns {
             .number(format!("{name}_se"), errors)
     }
 
-    /// Adds a column of counts.
+    /// Adds a column of counts, written as 32-bit integers; larger counts are clamped to the largest.
     #[must_use]
     pub fn whole(self, name: &'static str, values: impl IntoIterator<Item = usize>) -> Self {
         let count = |value: usize| i32::try_from(value).unwrap_or(i32::MAX);
@@ -88,7 +89,7 @@ impl Columns {
         )
     }
 
-    /// Adds a column of words.
+    /// Adds a column of words, which are quoted in CSV where necessary.
     #[must_use]
     pub fn text<S: Into<Cow<'static, str>>>(
         self,
@@ -101,11 +102,11 @@ impl Columns {
         )
     }
 
-    /// Writes it as CSV (RFC 4180, lines ended as on Unix), names first.
+    /// Writes the table as CSV (RFC 4180, but with line ends as on Unix), with the names of the columns first.
     ///
     /// # Errors
     ///
-    /// Errors of `out`.
+    /// Returns the errors of `out`.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         let names: Vec<&str> = self.0.iter().map(|(name, _)| &**name).collect();
         writeln!(out, "{}", names.join(","))?;

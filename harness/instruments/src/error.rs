@@ -1,4 +1,4 @@
-//! Errors that end a run of `hairis` with an exit code other than 0.
+//! Errors that end a run of a program with an exit code other than 0.
 
 use crate::interrupt::Signal;
 use crate::light::LightError;
@@ -7,55 +7,55 @@ use hairis::ParamError;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Failure of a run; `main` prints it once, in one line.
+/// Failure of a run, which `main` prints once, in one line.
 #[derive(Debug)]
 pub enum Error {
-    /// The command line is not valid.
+    /// Command line that is not valid: the problem in one line.
     Usage(String),
-    /// Standard input could not be read.
+    /// Failure to read standard input.
     Read(io::Error),
-    /// Standard output could not be written, except for a closed pipe.
+    /// Failure to write to standard output, other than a closed pipe.
     Write(io::Error),
-    /// The environment light could not be used.
+    /// Environment light that could not be used.
     Environment(LightError),
-    /// A file or folder of results could not be written.
+    /// File or folder of results that could not be written.
     Output {
-        /// The file or folder.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// The cause.
+        /// Cause of the failure.
         source: io::Error,
     },
-    /// A part of a study or of a picture, or a folder of them, could not be used.
+    /// Part of a study or of a picture, or a folder of parts, that could not be used.
     Part {
-        /// The file or folder.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// The cause.
+        /// Cause of the failure.
         problem: String,
     },
-    /// Parts of a study or of a picture were joined, but some are missing.
+    /// Parts of a study or of a picture that were joined although some are missing.
     Missing(String),
-    /// Hair that the program itself made was refused: a bug.
+    /// Rejected parameters of hair that the program itself made, which is a bug.
     Params(ParamError),
-    /// Checks failed; each has been named on standard error.
+    /// Number of failed checks, each of which has been named on standard error.
     Failed(usize),
-    /// Some lines of the input were refused; each was answered by an error of its own.
+    /// Input of which some lines were rejected; each was answered by an error of its own.
     Malformed {
-        /// Number of refused lines.
+        /// Number of rejected lines.
         lines: u64,
         /// Number of lines in all.
         of: u64,
     },
-    /// A signal asked the run to end, and what it had done is saved.
+    /// Signal that asked the run to end, after the finished work was saved.
     Interrupted {
-        /// The signal.
+        /// Signal that was received.
         signal: Signal,
-        /// Place of the saved work, and how to continue it.
+        /// Location of the saved work, and how to continue it.
         saved: String,
     },
 }
 
 impl Error {
-    /// A file or folder of results that cannot be written: for `map_err`.
+    /// Returns a function for `map_err` that makes [`Error::Output`] of the path and an I/O error.
     pub fn output(path: &Path) -> impl Fn(io::Error) -> Self + '_ {
         |source| Self::Output {
             path: path.to_owned(),
@@ -63,8 +63,8 @@ impl Error {
         }
     }
 
-    /// The exit code: 1 for a failed comparison or check, 2 for bad usage or input, and what shells
-    /// report for a process that a signal has ended.
+    /// Returns the exit code of a failed run: 1 for a failed comparison or check, and 2 for bad usage or input. A run that a signal has
+    /// ended returns the code that shells report for the signal.
     #[must_use]
     pub const fn exit_code(&self) -> u8 {
         match self {
@@ -96,7 +96,7 @@ impl fmt::Display for Error {
     }
 }
 
-/// Without sources: the text of each is part of the message.
+/// Reports no sources, because the text of the source is part of the message.
 impl core::error::Error for Error {}
 
 impl From<ParamError> for Error {

@@ -1,7 +1,7 @@
-//! Atomic writes: a file exists as a whole or not at all.
+//! Atomic writes, after which a file exists as a whole or not at all.
 //!
-//! Symbolic links are followed: they stay, and the file that they lead to is written. What is no file, such as a terminal
-//! or a pipe, is written directly.
+//! Symbolic links are followed: the links stay, and the file that they lead to is written. Anything that is not a file, such as a
+//! terminal or a pipe, is written directly.
 
 use crate::error::Error;
 use core::hash::{Hash as _, Hasher as _};
@@ -11,18 +11,18 @@ use std::hash::DefaultHasher;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Symbolic links behind each other, as many as Linux follows.
+/// Largest number of symbolic links that are followed one after another, as many as Linux follows.
 const MOST_LINKS: usize = 40;
-/// Ending of a file that is not whole.
+/// Suffix of the name of a file that is not whole yet.
 const UNFINISHED: &str = ".new";
-/// Bytes that file systems allow in a name.
+/// Number of bytes that file systems allow in a name.
 const LONGEST_NAME: usize = 255;
 
-/// Writes a file under another name and renames it once it is whole.
+/// Writes a file under a temporary name and renames it once it is whole.
 ///
 /// # Errors
 ///
-/// [`Error::Output`] with the file's own name.
+/// Returns [`Error::Output`] with the name of the file, not the temporary name.
 pub fn whole(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
@@ -40,18 +40,18 @@ pub fn whole(
         let unfinished = unfinished(&target);
         let renamed = fill(&unfinished).and_then(|()| fs::rename(&unfinished, target));
         renamed.inspect_err(|_| {
-            // What there is of it is of no use. The first error is the one to report.
+            // The unfinished file is of no use. The first error is the one to report.
             let _ = fs::remove_file(&unfinished);
         })
     };
     attempt().map_err(Error::output(path))
 }
 
-/// Writes a JSON file, as a whole or not at all.
+/// Writes `content` as a JSON file, as a whole or not at all.
 ///
 /// # Errors
 ///
-/// [`Error::Output`] with the file's own name.
+/// Returns [`Error::Output`] with the name of the file, not the temporary name.
 pub fn write_json(path: &Path, content: &impl Serialize) -> Result<(), Error> {
     whole(path, |out| {
         serde_json::to_writer_pretty(&mut *out, content)?;
@@ -59,11 +59,11 @@ pub fn write_json(path: &Path, content: &impl Serialize) -> Result<(), Error> {
     })
 }
 
-/// Checks that [`whole`] can write a file, before the work for it begins. Leaves the file as it is.
+/// Checks that [`whole`] can write a file, before the work for the file begins. Leaves the file as it is.
 ///
 /// # Errors
 ///
-/// [`Error::Output`] with the file's own name.
+/// Returns [`Error::Output`] with the name of the file, not the temporary name.
 pub fn writable(path: &Path) -> Result<(), Error> {
     let attempt = || {
         if path.is_dir() {
@@ -79,12 +79,12 @@ pub fn writable(path: &Path) -> Result<(), Error> {
     attempt().map_err(Error::output(path))
 }
 
-/// Whether there is something that is neither a file nor a folder.
+/// Returns true if the path leads to something that is neither a file nor a folder, such as a device.
 fn is_device(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|what| !what.is_file() && !what.is_dir())
 }
 
-/// The path of the file that symbolic links lead to. There need not be a file.
+/// Returns the path of the file that symbolic links lead to. The file need not exist.
 fn behind_links(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_owned();
     for _ in 0..MOST_LINKS {
@@ -96,7 +96,8 @@ fn behind_links(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("too many symbolic links"))
 }
 
-/// Name of a file while it is not whole, in the same folder.
+/// Returns the temporary path of a file that is not whole yet, in the same folder. Names that would become too long are replaced by a
+/// hash.
 fn unfinished(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     if name.len() + UNFINISHED.len() > LONGEST_NAME {
@@ -150,7 +151,7 @@ mod tests {
         fs::create_dir(at("far")).expect("made");
         symlink("far/second", at("first")).expect("linked");
         symlink("../file", at("far/second")).expect("linked");
-        // There is no file yet, then there is one.
+        // The file does not exist in the first pass, and exists in the second.
         for text in [b"one", b"two"] {
             writable(&at("first")).expect("writable");
             whole(&at("first"), |out| out.write_all(text)).expect("written");

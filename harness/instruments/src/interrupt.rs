@@ -1,22 +1,22 @@
-//! Signals that ask a run to end: it saves what it has first.
+//! Signals that ask a run to end, which first saves its finished work.
 
 use crate::error::Error;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Arc;
 
-/// A signal that asks a program to end.
+/// Signal that asks a program to end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Signal {
-    /// SIGINT: Ctrl-C.
+    /// SIGINT, which a terminal sends for Ctrl-C.
     Interrupt,
-    /// SIGTERM: `kill`, `timeout`, and schedulers before they pre-empt a job.
+    /// SIGTERM, which is sent by `kill`, by `timeout`, and by schedulers before they pre-empt a job.
     Terminate,
 }
 
 impl Signal {
     const ALL: [Self; 2] = [Self::Interrupt, Self::Terminate];
 
-    /// Its number on every Unix.
+    /// Returns the number of the signal, which is the same on every Unix.
     #[must_use]
     pub const fn number(self) -> u8 {
         match self {
@@ -25,7 +25,7 @@ impl Signal {
         }
     }
 
-    /// Its name.
+    /// Returns the name of the signal, such as `SIGINT`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -41,16 +41,15 @@ impl Signal {
     }
 }
 
-/// Whether a signal has asked this process to end. Clones share the answer.
+/// Flag that records whether a signal has asked this process to end. Clones share the flag.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt(Arc<AtomicUsize>);
 
 impl Interrupt {
-    /// Watches for SIGINT and SIGTERM, which no longer end the process by themselves. A second
-    /// signal does, at once; but not within a second of the first, because `timeout` and launchers
-    /// send the same one twice in a row.
+    /// Watches for SIGINT and SIGTERM, which from then on no longer end the process by themselves. A further signal ends the process at
+    /// once, unless it comes within a second of the first, because `timeout` and launchers send the same signal twice in a row.
     ///
-    /// Without signals of Unix nothing is watched.
+    /// On systems other than Unix nothing is watched.
     #[must_use]
     pub fn watch() -> Self {
         let watched = Self::default();
@@ -89,9 +88,9 @@ impl Interrupt {
             .map(|_| ())
     }
 
-    /// As if the process had received the signal.
+    /// Records a signal as if the process had received it. Only the first signal counts.
     pub fn raise(&self, signal: Signal) {
-        // The first one names the exit code.
+        // The first signal determines the exit code.
         let _ = self.0.compare_exchange(
             0,
             usize::from(signal.number()),
@@ -100,18 +99,18 @@ impl Interrupt {
         );
     }
 
-    /// The first signal, if there was one.
+    /// Returns the first signal that was received or [raised](Self::raise), if any.
     #[must_use]
     pub fn signal(&self) -> Option<Signal> {
         Signal::from_number(self.0.load(Ordering::Relaxed))
     }
 
-    /// Ends a run that a signal has asked to end; `saved` says where its work is, and how to
+    /// Returns an error that ends the run if a signal has asked for it. `saved` describes where the finished work is, and how to
     /// continue.
     ///
     /// # Errors
     ///
-    /// [`Error::Interrupted`] if there was a signal.
+    /// Returns [`Error::Interrupted`] if there was a signal.
     pub fn check(&self, saved: impl FnOnce() -> String) -> Result<(), Error> {
         self.signal().map_or(Ok(()), |signal| {
             Err(Error::Interrupted {

@@ -1,7 +1,7 @@
-//! Shared modules of the harness and the renderer: lights, random numbers, integrals, statistics; tables, plots, pages; files,
-//! flags and errors.
+//! Modules that the harness and the renderer share: lights, random numbers, integrals, statistics; tables, plots, pages; files, flags
+//! and errors.
 //!
-//! They depend on no experiment, scene or model of hair.
+//! None of the modules depends on an experiment, a scene or a model of hair.
 
 pub mod appended;
 pub mod columns;

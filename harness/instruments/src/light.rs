@@ -1,7 +1,8 @@
-//! Lights for the comparison: functions of direction alone, infinitely far away.
+//! Lights for the comparison, which are infinitely far away and so are functions of direction alone.
 //!
-//! World frame: y is up. With the fibre along world x, the fibre frame (u, v, w) is the world frame (x, y, z), and
-//! [`fibre_direction`](crate::direction::fibre_direction) gives world directions. Radiance is linear RGB with the Rec. 709 primaries, in arbitrary but common units.
+//! In the world frame y points up. With the fibre along world x, the fibre frame (u, v, w) is the world frame (x, y, z), so that
+//! [`fibre_direction`](crate::direction::fibre_direction) returns world directions. Radiance is linear RGB with the Rec. 709 primaries,
+//! in arbitrary but common units.
 
 mod constant;
 mod environment;
@@ -27,86 +28,89 @@ use glam::DVec3;
 use hairis::Vec3x8;
 use wide::f32x8;
 
-/// Luminance of a linear RGB colour with the Rec. 709 primaries, in the unit of the colour.
+/// Returns the luminance of a linear RGB colour with the Rec. 709 primaries, in the unit of the colour.
 #[inline]
 #[must_use]
 pub const fn luminance(rgb: [f64; 3]) -> f64 {
     0.212_639 * rgb[0] + 0.715_169 * rgb[1] + 0.072_192 * rgb[2]
 }
 
-/// A direction drawn from a light.
+/// Direction drawn from a light, with its radiance and its density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample {
     /// Unit direction from the shading point towards the light, world frame.
     pub dir: DVec3,
-    /// Radiance from there, linear RGB.
+    /// Radiance from the direction, linear RGB.
     pub radiance: [f64; 3],
-    /// Density per steradian; when it is 0 the sample contributes 0.
+    /// Density per steradian; if the density is 0, the sample contributes 0.
     pub pdf: f64,
 }
 
 /// Radiance and density of a light in eight directions, one per lane, in single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen8 {
-    /// Radiance from there, linear RGB.
+    /// Radiance from the direction, linear RGB.
     pub radiance: [f32x8; 3],
     /// Density of drawing the direction from the light, per steradian.
     pub pdf: f32x8,
 }
 
-/// Light arriving from infinitely far away.
+/// Light that arrives from infinitely far away, with its importance sampling.
 ///
-/// Directions given to `see` need not be exactly of unit length: a direction that went through `f32` is good enough.
+/// Directions passed to `see` need not have exactly unit length: a direction that was rounded to `f32` is good enough.
 pub trait Light: Debug + Sync + Send {
-    /// Name in tables and files; no two lights share one.
+    /// Returns the name in tables and files, which no two lights share.
     fn name(&self) -> &str;
 
-    /// Name in a sentence.
+    /// Returns the name as it reads in a sentence.
     fn words(&self) -> &str {
         self.name()
     }
 
-    /// Whether it shines from everywhere, about as brightly: directions of the hair's sampler alone then measure it well.
+    /// Returns true if the light shines from everywhere with about the same brightness. Directions of the hair's sampler alone then
+    /// measure the light well.
     fn is_everywhere(&self) -> bool {
         false
     }
 
-    /// [`radiance`](Self::radiance) and [`pdf`](Self::pdf).
+    /// Returns [`radiance`](Self::radiance) and [`pdf`](Self::pdf) of a direction at once.
     fn see(&self, dir: DVec3) -> ([f64; 3], f64);
 
-    /// Radiance arriving from `dir`, linear RGB.
+    /// Returns the radiance that arrives from `dir`, linear RGB.
     fn radiance(&self, dir: DVec3) -> [f64; 3] {
         self.see(dir).0
     }
 
-    /// Density of [`sample`](Self::sample) at `dir`, per steradian; integrates to 1 over the sphere.
+    /// Returns the density of [`sample`](Self::sample) at `dir`, per steradian; it integrates to 1 over the sphere.
     fn pdf(&self, dir: DVec3) -> f64 {
         self.see(dir).1
     }
 
-    /// A direction drawn with density [`pdf`](Self::pdf) from two numbers of [0, 1).
+    /// Draws a direction with density [`pdf`](Self::pdf) from two numbers of [0, 1).
     fn sample(&self, xi: [f64; 2]) -> LightSample;
 
-    /// Eight directions, as [`sample`](Self::sample) draws them.
+    /// Draws eight directions as [`sample`](Self::sample) does, from eight pairs of numbers.
     fn sample8(&self, xi: [[f64; 2]; 8]) -> [LightSample; 8] {
         xi.map(|xi| self.sample(xi))
     }
 
-    /// [`radiance`](Self::radiance) and [`pdf`](Self::pdf) in eight directions, one per lane: unit vectors of single precision.
+    /// Returns [`radiance`](Self::radiance) and [`pdf`](Self::pdf) in eight directions, one per lane, which are unit vectors in single
+    /// precision.
     ///
-    /// - Accuracy: that of `f32`; a direction within a few 1e-7 rad of an edge may be taken for one on the other side.
+    /// - Accuracy: that of `f32`; a direction within a few 1e-7 rad of an edge may count as lying on the other side.
     fn see8(&self, dir: &Vec3x8) -> Seen8;
 
-    /// Reference integral of `radiance * f` over the sphere, `f` per steradian and linear RGB.
+    /// Computes the reference integral of `radiance * f` over the sphere, with `f` per steradian and in linear RGB.
     ///
-    /// Each light integrates over its own support, so its edges cost nothing. `sphere` gives the tolerance and, for lights that cover the whole sphere, the
-    /// breakpoints of the lobes of `f` (fibre along world x). An [`Environment`] integrates texel by texel and only estimates the error.
+    /// Each light integrates over its own support, so its edges cost nothing. `sphere` specifies the tolerance and, for lights that
+    /// cover the whole sphere, the breakpoints of the lobes of `f` (fibre along world x). An [`Environment`] integrates texel by texel
+    /// and only estimates the error.
     fn integrate(&self, f: &dyn Fn(DVec3) -> [f64; 3], sphere: &SphereIntegrator) -> Integral<3> {
         sphere.integrate_direction(|dir| product(self.radiance(dir), f(dir)))
     }
 }
 
-/// The nearest number of single precision.
+/// Returns the number of single precision that is nearest to `x`.
 #[inline]
 #[must_use]
 #[expect(
@@ -117,15 +121,15 @@ pub const fn rounded(x: f64) -> f32 {
     x as f32
 }
 
-/// Channel-wise product of two colours.
+/// Returns the product of two colours, channel by channel.
 #[inline]
 #[must_use]
 pub fn product(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     core::array::from_fn(|c| a[c] * b[c])
 }
 
-/// The direction at the cosine and the square of the sine of an angle to the unit vector `axis`, and at azimuth `phi`, in a
-/// right-handed frame (Duff et al. 2017).
+/// Returns the direction at an angle to the unit vector `axis`, given by its cosine and the square of its sine, and at azimuth `phi` in
+/// a right-handed frame (Duff et al. 2017).
 fn about(axis: DVec3, cosine: f64, sine_sq: f64, phi: f64) -> DVec3 {
     let [e1, e2] = tangents(axis);
     let r = sine_sq.max(0.0).sqrt();
@@ -133,7 +137,7 @@ fn about(axis: DVec3, cosine: f64, sine_sq: f64, phi: f64) -> DVec3 {
     cosine * axis + r * cos_phi * e1 + r * sin_phi * e2
 }
 
-/// Two unit vectors that complete `axis` to the frame.
+/// Returns two unit vectors that complete `axis` to the frame.
 fn tangents(axis: DVec3) -> [DVec3; 2] {
     let sign = 1.0_f64.copysign(axis.z);
     let a = -1.0 / (sign + axis.z);
@@ -144,7 +148,7 @@ fn tangents(axis: DVec3) -> [DVec3; 2] {
     ]
 }
 
-/// The unit direction of `dir`, or straight up when it has none.
+/// Returns the unit vector along `dir`, or straight up if `dir` has no direction.
 fn unit_or_up(dir: DVec3) -> DVec3 {
     dir.try_normalize().unwrap_or(DVec3::Y)
 }

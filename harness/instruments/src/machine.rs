@@ -1,14 +1,13 @@
-//! Machine and build, printed beside each figure of a report.
+//! Machine and build that produced a report, printed beside its figures.
 
 use serde::Serialize;
 
-/// The machine and the build, as reported by the system and the compiler. Nothing here is measured. See
-/// [`machine!`](crate::machine!).
+/// Machine and build, as reported by the system and the compiler; nothing is measured. Made by the macro [`machine!`](crate::machine!).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Machine {
-    /// Model name of the processor, or its architecture if the system does not report it.
+    /// Model name of the processor, or its architecture if the system does not report the name.
     pub cpu: String,
-    /// Logical cores this process may use.
+    /// Number of logical cores that this process may use.
     pub logical_cores: usize,
     /// Operating system, as Rust names it.
     pub os: &'static str,
@@ -16,22 +15,23 @@ pub struct Machine {
     pub arch: &'static str,
     /// Version line of the compiler.
     pub rustc: &'static str,
-    /// Optimisation level of the package whose build this is.
+    /// Optimisation level of the package that called [`machine!`](crate::machine!).
     pub opt_level: &'static str,
-    /// Whether debug assertions are compiled in: figures of speed from such a build mean nothing.
+    /// Whether debug assertions are compiled in, in which case figures of speed mean nothing.
     pub debug_assertions: bool,
-    /// Commit the build was made from, in full, or "unknown".
+    /// Full hash of the commit that the build was made from, or "unknown".
     pub commit: &'static str,
-    /// Whether tracked files differed from that commit when the build was made; `None` when unknown.
+    /// Whether tracked files differed from the commit when the build was made; `None` if unknown.
     ///
-    /// The build looks again after each commit and each change of what is compiled; an edit of other files alone is not seen until then.
+    /// The build script checks again after each commit and each change of a source that it watches. Until then, an edit of other files
+    /// goes unnoticed.
     pub dirty: Option<bool>,
-    /// Target features the code was compiled for, of those that matter here. Dispatch at run time may use more.
+    /// Target features that the code was compiled for, limited to those that may affect the kernels. Dispatch at run time may use more.
     pub target_features: Vec<&'static str>,
 }
 
-/// The current [`Machine`](crate::machine::Machine) and the build of the calling package. The build script of that package must
-/// set the variables `HAIRIS_BUILD_*`, as `harness/build.rs` does.
+/// Returns the current [`Machine`](crate::machine::Machine) with the build of the calling package. The build script of that package
+/// must set the variables `HAIRIS_BUILD_*`, as `harness/build.rs` does.
 #[macro_export]
 macro_rules! machine {
     () => {
@@ -46,8 +46,8 @@ macro_rules! machine {
 }
 
 impl Machine {
-    /// This machine, and what a build script recorded: commit, whether files differ from it ("yes", "no" or "unknown"),
-    /// compiler, optimisation level, and target features with commas between them.
+    /// Describes this machine and the facts that a build script recorded: the commit, whether files differ from the commit ("yes", "no"
+    /// or "unknown"), the compiler, the optimisation level, and the target features separated by commas.
     #[must_use]
     pub fn of_build([commit, dirty, rustc, opt_level, target_features]: [&'static str; 5]) -> Self {
         Self {
@@ -68,7 +68,7 @@ impl Machine {
         }
     }
 
-    /// One line for table captions: processor, cores, compiled features, commit.
+    /// Returns one line for the captions of tables: processor, cores, system, compiled features, compiler and commit.
     #[must_use]
     pub fn summary(&self) -> String {
         let commit = self.commit.get(..12).unwrap_or(self.commit);
@@ -89,7 +89,7 @@ impl Machine {
     }
 }
 
-/// The processor's name from the system, or the architecture.
+/// Returns the processor's name as the system reports it, or the architecture.
 fn cpu_name() -> String {
     std::fs::read_to_string("/proc/cpuinfo")
         .ok()
@@ -97,7 +97,7 @@ fn cpu_name() -> String {
         .unwrap_or_else(|| std::env::consts::ARCH.to_owned())
 }
 
-/// The first name a `cpuinfo` text gives: "model name" on x86, others on ARM, POWER and RISC-V.
+/// Returns the first name in a `cpuinfo` text: "model name" on x86, other keys on ARM, POWER and RISC-V.
 fn name_in_cpuinfo(text: &str) -> Option<String> {
     [
         "model name",
@@ -117,7 +117,7 @@ fn name_in_cpuinfo(text: &str) -> Option<String> {
     })
 }
 
-/// Compiled target features that may affect the speed of the kernels.
+/// Returns the compiled target features that may affect the speed of the kernels.
 fn known_features(compiled: &'static str) -> Vec<&'static str> {
     const KNOWN: [&str; 12] = [
         "sse2", "sse4.1", "sse4.2", "avx", "avx2", "fma", "bmi2", "avx512f", "avx512vl", "neon",

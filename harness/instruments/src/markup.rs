@@ -1,8 +1,8 @@
-//! Text made safe for HTML and SVG.
+//! Escaping of text for HTML and SVG, and a check for tests that markup nests.
 
-/// `text` with what markup gives a meaning escaped, for element content and quoted attributes alike.
+/// Escapes characters that have a meaning in markup, for element content and quoted attributes alike.
 ///
-/// Control characters, which XML forbids even when escaped, are left out; tab and line ends become spaces.
+/// Control characters, which XML forbids even when escaped, are left out; tabs and line ends become spaces.
 #[must_use]
 pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
@@ -19,7 +19,7 @@ pub fn escape(text: &str) -> String {
     out
 }
 
-/// `text` without control characters: for writers that escape by themselves.
+/// Returns `text` without control characters, for writers that escape by themselves.
 pub(crate) fn clean(text: &str) -> String {
     text.chars().filter_map(printable).collect()
 }
@@ -32,12 +32,12 @@ fn printable(c: char) -> Option<char> {
     }
 }
 
-/// Checks that `markup` nests: every tag closed, in order, and no stray angle bracket. Void HTML elements may stay open. For
-/// tests of pages.
+/// Checks that `markup` nests: that tags are closed in order, and that no angle bracket is stray. Void HTML elements may stay open. The
+/// check is meant for tests of pages.
 ///
 /// # Errors
 ///
-/// Describes the first fault.
+/// Returns a description of the first fault.
 pub fn well_formed(markup: &str) -> Result<(), String> {
     const VOID: [&str; 3] = ["meta", "br", "link"];
     let mut open: Vec<&str> = Vec::new();

@@ -1,9 +1,9 @@
-//! Charts as self-contained SVG text: plain numbers in, a `String` out.
+//! Charts as self-contained SVG text, made from plain numbers and returned as a `String`.
 //!
-//! Charts take any number: NaN and infinities, and values of 0 and below on a logarithmic axis, are left out. Colours
-//! are those of Okabe and Ito; lines differ in their dashes and markers too, so that a chart survives grey printing.
-//! Each SVG has a white sheet, a name and a description for screen readers, and no ids, so that many can stand in one
-//! page. All are of one width, so that letters have one size on a page, and can be read on a phone.
+//! Charts accept any number: NaN and infinities are left out, and so are values of 0 and below on a logarithmic axis. Colours are those
+//! of Okabe and Ito; lines also differ in their dashes and markers, so that a chart survives grey printing. Each SVG has a white sheet,
+//! and a name and a description for screen readers. None has ids, so that many charts can stand in one page. All have the same width,
+//! so that letters have one size on a page and can be read on a phone.
 
 mod axis;
 mod bar;

@@ -1,4 +1,4 @@
-//! Entry point of a command-line program: flags, help, errors and exit codes.
+//! Entry points of command-line programs: flags, help, errors and exit codes.
 
 use crate::error::Error;
 use clap::{ArgMatches, Command, Parser};
@@ -8,13 +8,12 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 use std::{env, thread};
 
-/// The variable that tells rayon how many threads to use.
+/// Environment variable that sets the number of threads of rayon.
 const THREADS: &str = "RAYON_NUM_THREADS";
 
-/// Parses the command line and calls `work`. Prints an error as one line on standard error, after `name`, and returns its exit
-/// code.
+/// Parses the command line and calls `work`. Prints an error as one line on standard error, after `name`, and returns its exit code.
 ///
-/// If help or the version is asked for, prints that and succeeds without calling `work`.
+/// If the command line asks for help or the version, prints that and succeeds without calling `work`.
 pub fn run<F: Parser>(name: &str, work: impl FnOnce(&F) -> Result<(), Error>) -> ExitCode {
     match flags().and_then(|flags| flags.map_or(Ok(()), |flags| work(&flags))) {
         Ok(()) => ExitCode::SUCCESS,
@@ -25,7 +24,7 @@ pub fn run<F: Parser>(name: &str, work: impl FnOnce(&F) -> Result<(), Error>) ->
     }
 }
 
-/// The flags; `None` after printing the help or the version.
+/// Parses the flags; returns `None` after printing the help or the version.
 fn flags<F: Parser>() -> Result<Option<F>, Error> {
     match matches(F::command()).and_then(|matches| F::from_arg_matches(&matches)) {
         Ok(flags) => Ok(Some(flags)),
@@ -38,7 +37,8 @@ fn flags<F: Parser>() -> Result<Option<F>, Error> {
     }
 }
 
-/// The words of the command line. Numbers below 0 are values, whose flag refuses them, and no flags of their own.
+/// Parses the words of the command line. A negative number counts as the value of the flag before it, which may reject it, and not as a
+/// flag.
 fn matches(command: Command) -> Result<ArgMatches, clap::Error> {
     let with_numbers = |command: Command| {
         command.mut_args(|arg| {
@@ -51,7 +51,7 @@ fn matches(command: Command) -> Result<ArgMatches, clap::Error> {
         .try_get_matches()
 }
 
-/// The first paragraph of clap's message, in one line; the usage that follows it is left to `--help`.
+/// Returns the first paragraph of clap's message in one line. The usage that follows the paragraph is left to `--help`.
 fn one_line(message: &str) -> String {
     let first = message.split("\n\n").next().unwrap_or(message);
     let words: Vec<&str> = first.split_whitespace().collect();
@@ -62,8 +62,8 @@ fn one_line(message: &str) -> String {
     )
 }
 
-/// Remarks on a count of threads, in the variable `RAYON_NUM_THREADS`, that is none or above the
-/// cores. Programs with parallel work call it first.
+/// Prints a remark if the number of threads in the variable `RAYON_NUM_THREADS` is not a number, or exceeds the number of cores.
+/// Programs with parallel work call this first.
 pub fn check_threads() {
     let cores = thread::available_parallelism().map_or(1, NonZero::get);
     let wanted = env::var_os(THREADS);
@@ -72,8 +72,8 @@ pub fn check_threads() {
     }
 }
 
-/// The remark on a value of the variable; `None` if there is nothing odd about it. For rayon 0 is
-/// its default, as for none.
+/// Returns the remark on a value of the variable, or `None` if the value is not odd. A value of 0 is rayon's default, as if the
+/// variable were not set.
 fn remark_on_threads(wanted: &OsStr, cores: usize) -> Option<String> {
     let count = wanted.to_str().and_then(|text| text.parse::<usize>().ok());
     match count {
@@ -87,11 +87,11 @@ fn remark_on_threads(wanted: &OsStr, cores: usize) -> Option<String> {
     }
 }
 
-/// Prints on standard output. A reader that leaves early, as `head` does, is no error.
+/// Prints a text on standard output. A reader that closes the pipe early, as `head` does, is not an error.
 ///
 /// # Errors
 ///
-/// [`Error::Write`] for anything else.
+/// Returns [`Error::Write`] for every failure other than a closed pipe.
 pub fn print(text: impl AsRef<[u8]>) -> Result<(), Error> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_ref()).and_then(|()| out.flush()) {
@@ -100,7 +100,7 @@ pub fn print(text: impl AsRef<[u8]>) -> Result<(), Error> {
     }
 }
 
-/// Prints a line on standard error. Ignores write errors. Control characters, which names of files may have, are escaped.
+/// Prints a line on standard error and ignores write errors. Control characters, which names of files may contain, are escaped.
 pub fn say(line: &str) {
     let mut text = String::new();
     for character in line.chars() {

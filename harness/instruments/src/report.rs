@@ -1,4 +1,4 @@
-//! The report: one self-contained HTML page, without scripts.
+//! Reports, each of which is one self-contained HTML page without scripts.
 
 use crate::error::Error;
 use crate::files::{whole, writable};
@@ -12,14 +12,14 @@ use std::io::Write;
 use std::path::Path;
 
 const STYLE: &str = include_str!("report/style.css");
-/// File of the page.
+/// Name of the page's file.
 const PAGE: &str = "report.html";
-/// Folder of the figures.
+/// Name of the folder of the figures.
 const FIGURES: &str = "figures";
 
-/// A page: verdicts and one plot, then findings, then sections of plots with their tables folded away.
+/// Page of a report: verdicts and one plot, then findings, then sections of plots with their tables folded away.
 ///
-/// Texts are plain: everything in them is escaped, and what stands between `` ` `` marks is set as code.
+/// Texts are plain: everything in them is escaped, and text between `` ` `` marks is set as code.
 ///
 /// ```
 /// use hairis_instruments::report::{Report, Section};
@@ -34,21 +34,21 @@ const FIGURES: &str = "figures";
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
-    /// The title.
+    /// Title of the page.
     pub title: String,
-    /// The line under the title, such as when and where it was made.
+    /// Line under the title, such as when and where the report was made.
     pub subtitle: String,
-    /// Use cases with a sentence each; they come first.
+    /// Use cases with a sentence each, which come first on the page.
     pub verdicts: Vec<[String; 2]>,
-    /// The plot beside the verdicts.
+    /// Plot beside the verdicts.
     pub summary: Option<Drawing>,
-    /// Sentences that follow the verdicts; the question that one begins with, if any, stands out.
+    /// Sentences that follow the verdicts. If a sentence begins with a question, the question stands out.
     pub findings: Vec<String>,
-    /// The sections, the last about the method.
+    /// Sections in the order of the page, the last about the method.
     pub sections: Vec<Section>,
 }
 
-/// A part of a report, under a heading of its own and in the table of contents.
+/// Part of a report, with a heading of its own and an entry in the table of contents.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[must_use]
 pub struct Section {
@@ -62,19 +62,19 @@ enum Block {
     Figure(Drawing),
 }
 
-/// A drawing with its caption.
+/// Drawing with its caption, and the name under which its files are written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
-    /// Name of its files, without the end: letters, digits and hyphens; empty for none.
+    /// Name of the files without the ending: letters, digits and hyphens, or empty for no name.
     pub name: String,
-    /// A complete `<svg>` element, as those of [`crate::plot`]: it goes into the page as it is.
+    /// Complete `<svg>` element, such as those of [`crate::plot`], which goes into the page as it is.
     pub svg: String,
-    /// Caption.
+    /// Caption below the drawing.
     pub caption: String,
 }
 
 impl Drawing {
-    /// A drawing with its name and its caption.
+    /// Makes a drawing with its name and its caption.
     #[must_use]
     pub fn new(name: impl Into<String>, svg: String, caption: impl Into<String>) -> Self {
         Self {
@@ -86,7 +86,7 @@ impl Drawing {
 }
 
 impl Section {
-    /// A section without content.
+    /// Makes a section that has a title and no content yet.
     pub fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
@@ -94,17 +94,17 @@ impl Section {
         }
     }
 
-    /// Adds a heading within the section.
+    /// Adds a heading within the section, one level below that of the section.
     pub fn heading(self, text: &str) -> Self {
         self.html(format!("<h3>{}</h3>\n", inline(text)))
     }
 
-    /// Adds a paragraph.
+    /// Adds a paragraph of plain text, in which text between `` ` `` marks is set as code.
     pub fn paragraph(self, text: impl AsRef<str>) -> Self {
         self.html(format!("<p>{}</p>\n", inline(text.as_ref())))
     }
 
-    /// Adds tables, each behind its title.
+    /// Adds tables, each folded away behind its title.
     pub fn tables(self, tables: impl IntoIterator<Item = Table>) -> Self {
         tables.into_iter().fold(self, |section, table| {
             let title = escape(table.title());
@@ -115,12 +115,12 @@ impl Section {
         })
     }
 
-    /// Adds names with their values: the CPU, the seed, the commit.
+    /// Adds a list of names with their values, such as the CPU, the seed and the commit.
     pub fn facts<S: AsRef<str>>(self, facts: &[[S; 2]]) -> Self {
         self.html(definitions(facts))
     }
 
-    /// Adds figures, which are numbered through the report.
+    /// Adds figures, which are numbered throughout the report.
     pub fn figures(mut self, figures: impl IntoIterator<Item = Drawing>) -> Self {
         self.blocks.extend(figures.into_iter().map(Block::Figure));
         self
@@ -133,7 +133,7 @@ impl Section {
 }
 
 impl Report {
-    /// The page.
+    /// Returns the page as HTML, with its style and its figures included.
     #[must_use]
     pub fn html(&self) -> String {
         let mut last = 0;
@@ -186,7 +186,7 @@ impl Report {
         )
     }
 
-    /// The figures in their order.
+    /// Returns the figures in the order of their numbers.
     fn figures(&self) -> impl Iterator<Item = &Drawing> {
         let blocks = self.sections.iter().flat_map(|section| &section.blocks);
         let figures = blocks.filter_map(|block| {
@@ -203,7 +203,7 @@ impl Report {
     ///
     /// # Errors
     ///
-    /// [`Error::Output`] for the page, the folder or a figure.
+    /// Returns [`Error::Output`] if the page, the folder or a figure cannot be written.
     pub fn writable(dir: &Path) -> Result<(), Error> {
         let folder = dir.join(FIGURES);
         fs::create_dir_all(&folder).map_err(Error::output(&folder))?;
@@ -211,12 +211,12 @@ impl Report {
         writable(&folder.join("figure.svg"))
     }
 
-    /// Writes the page to `report.html` in `dir`, and every figure to `figures/NAME-NUMBER-....svg`, with feature `png` to
-    /// `.png` too, each as a whole or not at all.
+    /// Writes the page to `report.html` in `dir`, and every figure to `figures/NAME-NUMBER-....svg`, with feature `png` also to `.png`.
+    /// Each file is written as a whole or not at all.
     ///
     /// # Errors
     ///
-    /// [`Error::Output`] for one that cannot be written.
+    /// Returns [`Error::Output`] if a file cannot be written.
     pub fn write(&self, dir: &Path, name: &str) -> Result<(), Error> {
         whole(&dir.join(PAGE), |out| out.write_all(self.html().as_bytes()))?;
         let folder = dir.join(FIGURES);
@@ -251,7 +251,7 @@ fn definitions<S: AsRef<str>>(pairs: &[[S; 2]]) -> String {
     )
 }
 
-/// A finding: the question that it begins with, if any, stands out.
+/// Returns a finding as HTML, in which a question at the beginning stands out.
 fn answer(text: &str) -> String {
     match text.split_once("? ") {
         Some((question, answer)) if !question.contains(['.', '`']) => {
@@ -261,7 +261,7 @@ fn answer(text: &str) -> String {
     }
 }
 
-/// Escaped text with what stands between pairs of `` ` `` as code; numbers stay with their unit.
+/// Escapes a text and sets parts between pairs of `` ` `` as code; numbers stay on one line with their unit.
 fn inline(text: &str) -> String {
     let mut html = String::new();
     let mut rest = text;

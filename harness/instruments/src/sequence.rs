@@ -1,7 +1,8 @@
-//! Sources of the uniform numbers `xi` that estimators consume: independent, Halton, stratified.
+//! Sources of the uniform numbers `xi` that estimators consume: independent, Halton and stratified.
 //!
-//! Every source is set by `(seed, stream)`: one seed per run, one stream per cell of the comparison (see [`stream_id`]), so a figure does not depend on which
-//! thread computed it or on what ran before. Numbers are in [0, 1); after [`to_unit_f32`] in [0, 1 - 2^-24]. Neither is ever exactly 1.
+//! Every source is determined by `(seed, stream)`: one seed per run, and one stream per cell of the comparison (see [`stream_id`]). A
+//! figure therefore does not depend on which thread computed it or on what ran before. Numbers are in [0, 1), and after [`to_unit_f32`]
+//! in [0, 1 - 2^-24]. No number is ever exactly 1.
 
 mod halton;
 mod stratified;
@@ -13,20 +14,20 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use serde::Serialize;
 
-/// The largest number a source gives as `f32`: 1 - 2^-24.
+/// Largest number that a source returns as `f32`: 1 - 2^-24.
 pub const MAX_XI_F32: f32 = 1.0 - f32::EPSILON / 2.0;
 
-/// A source of points in the unit cube.
+/// Source of points in the unit cube, whose coordinates are the uniform numbers of a sample.
 pub trait XiSource {
     /// Fills `point` with the coordinates of the next point, each in [0, 1).
     ///
-    /// - Shape: one coordinate per element. An independent source takes any length; the others document theirs.
+    /// - Shape: one coordinate per element. An independent source accepts any length; the others document theirs.
     ///
     /// # Panics
-    /// When the source has fewer dimensions than `point` has elements.
+    /// Panics if the source has fewer dimensions than `point` has elements.
     fn next_point(&mut self, point: &mut [f64]);
 
-    /// The next point's first `D` coordinates, in [0, 1).
+    /// Returns the first `D` coordinates of the next point, in [0, 1).
     fn next_xi<const D: usize>(&mut self) -> [f64; D]
     where
         Self: Sized,
@@ -36,7 +37,7 @@ pub trait XiSource {
         point
     }
 
-    /// The next point's first `D` coordinates as `f32`, in [0, 1 - 2^-24].
+    /// Returns the first `D` coordinates of the next point as `f32`, in [0, 1 - 2^-24].
     fn next_xi_f32<const D: usize>(&mut self) -> [f32; D]
     where
         Self: Sized,
@@ -51,9 +52,9 @@ impl<S: XiSource + ?Sized> XiSource for Box<S> {
     }
 }
 
-/// Rounds a number of [0, 1) to `f32` without ever reaching 1, which rounding to nearest would do from 1 - 2^-25 on.
+/// Rounds a number of [0, 1) to `f32` without ever reaching 1, whereas rounding to nearest would reach it from 1 - 2^-25 on.
 ///
-/// - Domain: any `x`; below 0 gives 0, from 1 - 2^-24 on gives 1 - 2^-24, NaN gives 0.
+/// - Domain: any `x`. Numbers below 0 and NaN give 0, and numbers from 1 - 2^-24 on give 1 - 2^-24.
 #[inline]
 #[must_use]
 pub fn to_unit_f32(x: f64) -> f32 {
@@ -66,17 +67,18 @@ pub fn to_unit_f32(x: f64) -> f32 {
     if y > 0.0 { y.min(MAX_XI_F32) } else { 0.0 }
 }
 
-/// A stream number for the cell of a comparison at the given indices, for [`Independent::new`] and its siblings.
+/// Returns the stream number of the comparison's cell at the given indices, for [`Independent::new`] and its siblings.
 ///
-/// Chained `SplitMix64` finalisers: distinct index lists give distinct streams except with probability about 2^-64 a pair. The start is salted, lest the
-/// hash of a small length cancel the hash of an equal index.
+/// The number is a chain of `SplitMix64` finalisers: distinct lists of indices have distinct streams except with a probability of about
+/// 2^-64 per pair. The start is salted, so that the hash of a small length cannot cancel the hash of an equal index.
 #[must_use]
 pub fn stream_id(indices: &[u64]) -> u64 {
     let start = mix(0x6861_6972_6973_0001_u64.wrapping_add((indices.len() as u64) << 32));
     indices.iter().fold(start, |h, &i| mix(h ^ mix(i)))
 }
 
-/// Finaliser of `SplitMix64` (Steele, Lea and Flood 2014; constants by Stafford), with the increment that keeps 0 from being a fixed point.
+/// Hashes a number by the finaliser of `SplitMix64` (Steele, Lea and Flood 2014; constants by Stafford), with the increment that keeps
+/// 0 from being a fixed point.
 #[inline]
 #[must_use]
 pub fn mix(x: u64) -> u64 {
@@ -86,18 +88,18 @@ pub fn mix(x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-/// The upper 53 bits as a multiple of 2^-53 in [0, 1).
+/// Returns the upper 53 bits as a multiple of 2^-53 in [0, 1).
 #[inline]
 pub(crate) fn unit_f64(bits: u64) -> f64 {
     (bits >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
 }
 
-/// A hash as a whole number below `bound`.
+/// Maps a hash to a whole number below `bound`.
 fn below(hash: u64, bound: u64) -> u64 {
     ((u128::from(hash) * u128::from(bound)) >> 64) as u64
 }
 
-/// Independent uniform numbers from `ChaCha8`.
+/// Source of independent uniform numbers, drawn by the generator `ChaCha8`.
 ///
 /// # Examples
 /// ```
@@ -112,7 +114,8 @@ pub struct Independent {
 }
 
 impl Independent {
-    /// The stream `stream` of the run `seed`. Streams of one seed do not overlap: the stream number is the cipher's nonce.
+    /// Makes the source for stream `stream` of the run with seed `seed`. Streams of one seed do not overlap, because the stream number
+    /// is the cipher's nonce.
     #[must_use]
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -120,19 +123,19 @@ impl Independent {
         Self { rng }
     }
 
-    /// One number in [0, 1), a multiple of 2^-53.
+    /// Draws a number in [0, 1), which is a multiple of 2^-53.
     #[inline]
     pub fn next_f64(&mut self) -> f64 {
         unit_f64(self.rng.next_u64())
     }
 
-    /// One number in [0, 1 - 2^-24], a multiple of 2^-24.
+    /// Draws a number in [0, 1 - 2^-24], which is a multiple of 2^-24.
     #[inline]
     pub fn next_f32(&mut self) -> f32 {
         (self.rng.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
     }
 
-    /// A whole number below `bound` (0 when `bound` is 0), with a bias below `bound` / 2^64.
+    /// Draws a whole number below `bound`, or returns 0 if `bound` is 0. The bias is below `bound` / 2^64.
     pub fn next_below(&mut self, bound: usize) -> usize {
         #[expect(clippy::cast_possible_truncation, reason = "a number below `bound`")]
         let index = below(self.rng.next_u64(), bound as u64) as usize;
@@ -148,11 +151,11 @@ impl XiSource for Independent {
     }
 }
 
-/// The kinds of source of a comparison.
+/// Kind of source that a comparison draws its samples from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SequenceKind {
-    /// [`Independent`] numbers: the kind that variance per sample is defined on.
+    /// [`Independent`] numbers, on which variance per sample is defined.
     Independent,
     /// Scrambled [`Halton`] points, as the paper draws its samples.
     Halton,
@@ -161,10 +164,10 @@ pub enum SequenceKind {
 }
 
 impl SequenceKind {
-    /// Every kind, in the order of reports.
+    /// Kinds of source in the order of reports.
     pub const ALL: [Self; 3] = [Self::Independent, Self::Halton, Self::Stratified];
 
-    /// Name in reports and flags.
+    /// Returns the name of the kind in reports and flags.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -174,13 +177,13 @@ impl SequenceKind {
         }
     }
 
-    /// A source of this kind for estimates of `samples` points of `dims` coordinates each.
+    /// Makes a source of this kind for estimates with `samples` points of `dims` coordinates each.
     ///
-    /// Each further `samples` points of a stratified source are a new randomisation; a Halton source goes on with its sequence, so take one source (one
-    /// stream) for each independent randomisation.
+    /// Each further `samples` points of a stratified source are a new randomisation, whereas a Halton source goes on with its sequence.
+    /// Use one source (one stream) for each independent randomisation.
     ///
     /// # Panics
-    /// For `Halton` with more dimensions than [`HALTON_BASES`] has.
+    /// Panics for `Halton` with more dimensions than [`HALTON_BASES`] has.
     #[must_use]
     pub fn source(
         self,

@@ -1,9 +1,9 @@
-//! Shards: the cells that a process computes when several share a study.
+//! Shards: parts of a study, each of which one of several processes computes.
 
 use core::fmt;
 use core::str::FromStr;
 
-/// Part `index` of `of`, counted from 1: every `of`-th cell, so that all parts take about as long.
+/// Part `index` of `of` parts, counted from 1. A part consists of every `of`-th cell, so that all parts take about the same time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     index: usize,
@@ -11,27 +11,27 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// The only part.
+    /// Whole study as its only part.
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
-    /// The parts of `of`, in order.
+    /// Returns all parts of a study that is divided into `of` parts, in order.
     pub fn all(of: usize) -> impl Iterator<Item = Self> {
         (1..=of).map(move |index| Self { index, of })
     }
 
-    /// Number of the part, from 1.
+    /// Returns the number of the part, counted from 1.
     #[must_use]
     pub const fn index(self) -> usize {
         self.index
     }
 
-    /// Number of parts.
+    /// Returns the number of parts into which the study is divided.
     #[must_use]
     pub const fn of(self) -> usize {
         self.of
     }
 
-    /// Whether the cell at `index` is this part's.
+    /// Returns true if the cell at `index`, counted from 0, belongs to this part.
     #[must_use]
     pub const fn owns(self, index: usize) -> bool {
         index % self.of == self.index - 1

@@ -1,10 +1,11 @@
-//! Statistics of estimators and of timings: figures with error bars from columns of numbers.
+//! Statistics of estimators and of timings, which turn columns of numbers into figures with error bars.
 //!
-//! - [`Moments`]: running central moments up to the fourth; mean, variance and relative variance with their standard errors.
-//! - [`percentile`]: order statistics.
-//! - [`sidak`]: the correction for many tests.
+//! - [`Moments`]: running central moments up to the fourth, with the mean, the variance and the relative variance; means and relative
+//!   variances have standard errors.
+//! - [`percentile`]: order statistics of sorted samples.
+//! - [`sidak`]: correction of the significance for many tests.
 //!
-//! All numbers are `f64`. Nothing here draws random numbers or reads a clock.
+//! All numbers are `f64`. Nothing in this module draws random numbers or reads a clock.
 
 mod moments;
 mod spread;
@@ -12,9 +13,9 @@ mod spread;
 pub use moments::{Estimate, Moments};
 pub use spread::percentile;
 
-/// Significance for each of `tests` independent tests, such that all together keep `alpha`.
+/// Returns the significance for each of `tests` independent tests with which all of them together have the significance `alpha`.
 ///
-/// Sidak's `1 - (1 - alpha)^(1/tests)`, without cancellation.
+/// The result is Sidak's `1 - (1 - alpha)^(1/tests)`, computed without cancellation.
 ///
 /// - Domain: `alpha` in [0, 1]; no tests count as one.
 #[must_use]

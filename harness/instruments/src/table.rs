@@ -1,11 +1,11 @@
-//! Tables that read the same in the terminal and in the report.
+//! Tables with the same content in the terminal and in the report.
 
 pub mod number;
 
 use crate::markup;
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, TableStyle};
 
-/// A table: cells are text, formatted once (see [`number`]), so that its forms cannot differ.
+/// Table whose cells are text, formatted once (see [`number`]), so that its forms cannot differ.
 ///
 /// ```
 /// use hairis_instruments::table::{Table, number};
@@ -22,14 +22,14 @@ use comfy_table::{CellAlignment, ContentArrangement, LineStyle, TableStyle};
 #[must_use]
 pub struct Table {
     title: String,
-    /// The names of the columns, and whether they hold numbers, which stand to the right.
+    /// Names of the columns, and whether the columns hold numbers, which are aligned to the right.
     headers: Vec<(String, bool)>,
     rows: Vec<Vec<String>>,
     notes: Vec<String>,
 }
 
 impl Table {
-    /// A table without columns.
+    /// Makes a table that has a title, and no columns or rows yet.
     pub fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
@@ -37,28 +37,28 @@ impl Table {
         }
     }
 
-    /// Adds columns of text.
+    /// Adds columns of text with these headers, aligned to the left.
     pub fn texts<S: Into<String>>(mut self, headers: impl IntoIterator<Item = S>) -> Self {
         self.headers
             .extend(headers.into_iter().map(|header| (header.into(), false)));
         self
     }
 
-    /// Adds columns of numbers. Put the unit in the header.
+    /// Adds columns of numbers, aligned to the right, whose headers should contain the unit.
     pub fn numbers<S: Into<String>>(mut self, headers: impl IntoIterator<Item = S>) -> Self {
         self.headers
             .extend(headers.into_iter().map(|header| (header.into(), true)));
         self
     }
 
-    /// Adds a row; cells that it lacks are empty, and those beyond the last column are left out.
+    /// Adds a row. Missing cells are empty, and cells beyond the last column are left out.
     pub fn push<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
         let mut row: Vec<String> = cells.into_iter().map(Into::into).collect();
         row.resize(self.headers.len(), String::new());
         self.rows.push(row);
     }
 
-    /// Adds rows.
+    /// Adds rows of cells, each as [`push`](Self::push) does.
     pub fn rows<R: IntoIterator<Item = String>>(
         mut self,
         rows: impl IntoIterator<Item = R>,
@@ -67,26 +67,26 @@ impl Table {
         self
     }
 
-    /// Adds a line below the table.
+    /// Adds a note as a line below the table.
     pub fn note(mut self, text: impl Into<String>) -> Self {
         self.notes.push(text.into());
         self
     }
 
-    /// The title.
+    /// Returns the title of the table.
     #[must_use]
     pub fn title(&self) -> &str {
         &self.title
     }
 
-    /// Whether it has no rows.
+    /// Returns true if the table has no rows.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 
-    /// As lines of text, with cells broken so that none is longer than `width` characters. Without a width, lines fit the
-    /// terminal if standard output is one, and are as long as they have to be if not.
+    /// Formats the table as lines of text, with cells broken so that no line is longer than `width` characters. Without a width, lines
+    /// fit the terminal if standard output is one, and are as long as necessary otherwise.
     #[must_use]
     pub fn to_text(&self, width: Option<u16>) -> String {
         let line = || LineStyle::none().fill('─').junction('─');
@@ -125,7 +125,7 @@ impl Table {
         text
     }
 
-    /// As HTML, in a box of its own that scrolls sideways.
+    /// Formats the table as HTML, in a box of its own that scrolls sideways.
     #[must_use]
     pub fn to_html(&self) -> String {
         let class = |is_number: bool| if is_number { " class=\"number\"" } else { "" };

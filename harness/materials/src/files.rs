@@ -1,4 +1,4 @@
-//! Materials from files.
+//! Materials from files, each under a name of its own.
 
 use crate::MaterialSpec;
 use std::collections::HashSet;
@@ -6,15 +6,15 @@ use std::fs::File;
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
-/// Longest file that is read, in bytes: thousands of materials.
+/// Length of the longest file that is read, in bytes: enough for thousands of materials.
 const LONGEST: u64 = 1 << 20;
 
-/// Reads the materials of files, each under a name of its own: that of its file, with its place
-/// where the file has several, and with a number where another file has the same name.
+/// Reads the materials of files, each under a unique name. A material is named after its file; if the file has several materials, their
+/// places in the file are appended, and if another material has the same name already, a number.
 ///
 /// # Errors
 ///
-/// If a file cannot be read, or a material is refused: the file and the field.
+/// Returns an error that names the file if the file cannot be read, or the file and the field if a material is rejected.
 pub fn read(paths: &[PathBuf]) -> Result<Vec<(String, MaterialSpec)>, String> {
     let (mut names, mut all) = (Vec::new(), Vec::new());
     for path in paths {
@@ -32,8 +32,8 @@ pub fn read(paths: &[PathBuf]) -> Result<Vec<(String, MaterialSpec)>, String> {
     Ok(numbered(names.into_iter()).into_iter().zip(all).collect())
 }
 
-/// The names, with a number behind those that would be there already. File systems may not tell
-/// capitals apart.
+/// Makes names unique by appending a number to every name that has occurred before. Capitals do not count as a difference, because file
+/// systems may not tell them apart.
 #[must_use]
 pub fn numbered(names: impl Iterator<Item = String>) -> Vec<String> {
     let mut taken = HashSet::new();
@@ -47,7 +47,7 @@ pub fn numbered(names: impl Iterator<Item = String>) -> Vec<String> {
     names.map(&mut own).collect()
 }
 
-/// The text of a file.
+/// Returns the text of a file, which must be UTF-8 of at most [`LONGEST`] bytes.
 fn text(path: &Path) -> Result<String, String> {
     let cannot = |error: io::Error| format!("cannot read: {error}");
     let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! JSON with the path of an error.
+//! JSON values, and refusals that name the path of the field at fault.
 
 use core::fmt;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
@@ -6,10 +6,10 @@ use serde_json::de::StrRead;
 use serde_path_to_error::{Segment, Track};
 use std::collections::BTreeMap;
 
-/// A text that is being read.
+/// Deserializer of the text that is being read.
 type Input<'a> = serde_json::Deserializer<StrRead<'a>>;
 
-/// A JSON value.
+/// JSON value that keeps repeated fields of objects, so that they can be rejected.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
 #[serde(untagged)]
 pub enum Json {
@@ -17,17 +17,17 @@ pub enum Json {
     Null,
     /// `true` or `false`.
     Bool(bool),
-    /// A number, in double precision.
+    /// Number, in double precision.
     Number(f64),
-    /// A string.
+    /// String.
     Text(String),
-    /// An array.
+    /// Array of values.
     Array(Vec<Json>),
-    /// An object.
+    /// Object with named fields.
     Object(Entries),
 }
 
-/// The fields of an object, in the order of the input and as often as they are given.
+/// Fields of an object in the order of the input, each as often as the input gives it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entries(Vec<(String, Json)>);
 
@@ -56,11 +56,11 @@ impl<'de> Visitor<'de> for EntriesVisitor {
 }
 
 impl Json {
-    /// Parses a line that holds one value. A refusal names the innermost field that was being read.
+    /// Parses a line that holds exactly one value. An error names the innermost field that was being read.
     ///
     /// # Errors
     ///
-    /// If the line is blank, or not JSON.
+    /// Returns an error if the line is blank or not JSON.
     pub fn parse(line: &str) -> Result<Self, String> {
         if line.trim_ascii().is_empty() {
             return Err(refusal("line", "blank"));
@@ -73,11 +73,11 @@ impl Json {
         )
     }
 
-    /// Parses all values of a text, with or without white space between them.
+    /// Parses all values of a text, which may but need not be separated by white space.
     ///
     /// # Errors
     ///
-    /// If the text is not JSON.
+    /// Returns an error if a value of the text is not JSON.
     pub fn parse_all(text: &str) -> Result<Vec<Self>, String> {
         let mut input = serde_json::Deserializer::from_str(text);
         let mut values = Vec::new();
@@ -91,8 +91,8 @@ impl Json {
         Ok(values)
     }
 
-    /// The next value, checked by `then`; or the field that was being read, the problem and the
-    /// error.
+    /// Parses the next value and passes it to `then`. An error consists of the field that was being read, the problem and the
+    /// underlying error.
     fn next<'a>(
         input: &mut Input<'a>,
         then: impl FnOnce(Self, &mut Input<'a>) -> serde_json::Result<Self>,
@@ -121,7 +121,7 @@ impl Json {
         })
     }
 
-    /// The text of the object's field `name`, if there is one.
+    /// Returns the first string in fields called `name`; `None` if there is none or the value is not an object.
     #[must_use]
     pub fn peek(&self, name: &str) -> Option<&str> {
         let Self::Object(Entries(entries)) = self else {
@@ -133,12 +133,12 @@ impl Json {
         })
     }
 
-    /// The fields of an object at `path`, empty for that of the line: all of them `known`, and none
-    /// given twice.
+    /// Returns the fields of the object at `path`, after checking that all of them are `known` and none is given twice. The path of the
+    /// object that a line holds is empty.
     ///
     /// # Errors
     ///
-    /// If it is no object, or has other fields or one of them twice.
+    /// Returns an error if the value is not an object, has an unknown field, or has a field twice.
     pub fn fields(self, path: &str, known: &[&str]) -> Result<BTreeMap<String, Self>, String> {
         let Self::Object(Entries(entries)) = self else {
             let field = if path.is_empty() { "line" } else { path };
@@ -162,7 +162,7 @@ impl Json {
 }
 
 impl fmt::Display for Json {
-    /// The value as refusals show it, shortened.
+    /// Writes the value as error messages show it, shortened.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Null => f.write_str("null"),
@@ -175,7 +175,7 @@ impl fmt::Display for Json {
     }
 }
 
-/// The path of a field of the object at `path`.
+/// Returns the path of the field `name` of the object at `path`.
 #[must_use]
 pub fn join(path: &str, name: &str) -> String {
     let name = shortened(name);
@@ -186,19 +186,19 @@ pub fn join(path: &str, name: &str) -> String {
     }
 }
 
-/// Enough of a text to recognise it.
+/// Returns enough of a text to recognise it.
 fn shortened(text: &str) -> String {
     cut(text, 40)
 }
 
-/// Refusal of a line: the path of the field at fault, and the problem. A line of the input is
-/// echoed in part.
+/// Formats the refusal of a line: the path of the field at fault, and the problem. Both are cut, so that at most a part of the line is
+/// echoed.
 #[must_use]
 pub fn refusal(field: &str, problem: impl Into<String>) -> String {
     format!("{}: {}", cut(field, 80), cut(&problem.into(), 240))
 }
 
-/// The first `longest` characters of a text.
+/// Returns a text, cut after the first `longest` characters.
 fn cut(text: &str, longest: usize) -> String {
     match text.char_indices().nth(longest) {
         Some((at, _)) => format!("{}...", &text[..at]),
@@ -206,11 +206,11 @@ fn cut(text: &str, longest: usize) -> String {
     }
 }
 
-/// The place among `words` of the one at `path`.
+/// Returns the index of a string among `words`; `path` names the string in errors.
 ///
 /// # Errors
 ///
-/// If it is none of them.
+/// Returns an error if the value is not a string, or is none of `words`.
 pub fn word(path: &str, json: &Json, words: &[&str]) -> Result<usize, String> {
     let Json::Text(text) = json else {
         return Err(refusal(path, format!("must be a string, got {json}")));
@@ -221,11 +221,11 @@ pub fn word(path: &str, json: &Json, words: &[&str]) -> Result<usize, String> {
     })
 }
 
-/// The number at `path`.
+/// Returns the number that a value holds; `path` names the value in errors.
 ///
 /// # Errors
 ///
-/// If it is something else.
+/// Returns an error if the value is not a number.
 pub fn number(path: &str, json: &Json) -> Result<f64, String> {
     match json {
         Json::Number(number) => Ok(*number),
@@ -233,11 +233,11 @@ pub fn number(path: &str, json: &Json) -> Result<f64, String> {
     }
 }
 
-/// The `len` numbers at `path`.
+/// Returns the `len` numbers that an array holds; `path` names the array in errors.
 ///
 /// # Errors
 ///
-/// If it is no array of as many numbers.
+/// Returns an error if the value is not an array of exactly `len` numbers.
 pub fn numbers(path: &str, json: &Json, len: usize) -> Result<Vec<f64>, String> {
     match json {
         Json::Array(items) if items.len() == len => items

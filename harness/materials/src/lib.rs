@@ -1,8 +1,8 @@
-//! Materials of hair from JSON, shared by the programs.
+//! Materials of hair that are read from JSON, shared by the programs of the harness.
 //!
-//! - [`material`]: a model of the registry with its parameters.
-//! - [`files`]: materials of files, by name.
-//! - [`json`]: values, and refusals that name the field at fault.
+//! - [`material`]: models of the registry with their parameters.
+//! - [`files`]: materials of files, each with a unique name.
+//! - [`json`]: JSON values, and refusals that name the field at fault.
 
 pub mod files;
 pub mod json;

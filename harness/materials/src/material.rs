@@ -1,4 +1,4 @@
-//! A model of the registry with its parameters.
+//! Models of the registry with their parameters, as programs read them from JSON.
 
 use crate::json::{Json, join, number, numbers, refusal, word};
 use hairis::ParamError;
@@ -10,10 +10,10 @@ use hairis_variants::AnyMaterial;
 #[cfg(not(feature = "any"))]
 use hairis_variants::{Parameters, Registered, Visitor};
 
-/// Fields of an object, by name.
+/// Fields of a JSON object, by name.
 type Fields = BTreeMap<String, Json>;
 
-/// A model with checked parameters.
+/// Material specification: a model of the registry with parameters that have been checked.
 ///
 /// ```
 /// use hairis_materials::MaterialSpec;
@@ -28,20 +28,20 @@ type Fields = BTreeMap<String, Json>;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct MaterialSpec {
-    /// The model.
+    /// Model of the material.
     pub model: ModelId,
-    /// Whether the input names the model's sampler, or another [`choice`](ModelId::choice).
+    /// Whether the input names the model's sampler, or another [`choice`](ModelId::choice) of the model.
     pub is_chosen: bool,
     /// Parameters, rounded to single precision.
     pub values: Values,
-    /// Parameters as they are in the input.
+    /// Parameters in double precision, as they are in the input.
     pub exact: Values<f64>,
-    /// The material for the kernels.
+    /// Material for the kernels, made from the rounded parameters.
     #[cfg(feature = "any")]
     pub material: AnyMaterial,
 }
 
-/// Checks values of a model's parameters, and makes no material of them.
+/// Visitor that checks the values of a model's parameters without making a material.
 #[cfg(not(feature = "any"))]
 struct Check<'a>(&'a Values);
 
@@ -55,11 +55,11 @@ impl Visitor for Check<'_> {
 }
 
 impl MaterialSpec {
-    /// The material of a model's parameters.
+    /// Makes the specification of a model with these parameters, after checking their values.
     ///
     /// # Errors
     ///
-    /// If a value is out of its range.
+    /// Returns an error if a value is out of its range.
     pub fn new(model: ModelId, values: Values) -> Result<Self, ParamError> {
         #[cfg(not(feature = "any"))]
         model.visit(Check(&values))?;
@@ -73,8 +73,7 @@ impl MaterialSpec {
         })
     }
 
-    /// The first model of the name that an object gives; the first of all, where the name is not
-    /// that of any.
+    /// Returns the first model with the name that an object gives, or the first model of all if no model has that name.
     #[must_use]
     pub fn first_of_name(object: &Json) -> ModelId {
         let name = object.peek("model");
@@ -82,8 +81,8 @@ impl MaterialSpec {
             .unwrap_or(ModelId::ALL[0])
     }
 
-    /// Names of the fields of a request of `hairis eval` for a model: the material, and the query
-    /// about it.
+    /// Returns the names of the fields in a request of `hairis eval` for a model: the fields of the material, followed by those of the
+    /// query.
     pub fn fields_of_request(first: ModelId) -> impl Iterator<Item = &'static str> {
         let choice = first.choice().map(|(field, _)| field);
         let h = first.is_near_field().then_some("h");
@@ -95,12 +94,11 @@ impl MaterialSpec {
             .chain(["wo", "wi", "xi"])
     }
 
-    /// Reads a material from the fields of an object, of which
-    /// [`first_of_name`](Self::first_of_name) has told the model.
+    /// Reads a material from the fields of an object, whose model has been found by [`first_of_name`](Self::first_of_name).
     ///
     /// # Errors
     ///
-    /// If a field is missing or has no legal value: the field and the problem.
+    /// Returns an error that names the field and the problem if a field is missing or has no legal value.
     pub fn read(first: ModelId, object: &Fields) -> Result<Self, String> {
         let given = |name: &str| object.get(name).ok_or_else(|| refusal(name, "missing"));
         let names: Vec<_> = ModelId::defaults_of_names().map(ModelId::name).collect();
@@ -136,15 +134,15 @@ impl MaterialSpec {
         })
     }
 
-    /// Reads all materials of a text: objects with the fields of a request of `hairis eval`, one
-    /// after another. Fields of the query are not used.
+    /// Reads all materials of a text: objects with the fields of a request of `hairis eval`, one after another. The fields of the query
+    /// are accepted and ignored.
     ///
     /// # Errors
     ///
-    /// If there is none, or one is refused: the place of the material where there are several, the
-    /// field and the problem.
+    /// Returns an error if the text has no material, or if one is rejected. The error names the field and the problem, and the place of
+    /// the material if there are several.
     pub fn parse_all(text: &str) -> Result<Vec<Self>, String> {
-        // Files of Windows begin with a byte-order mark, and several may have been joined.
+        // Files from Windows begin with a byte-order mark, and several files may have been joined.
         let objects = Json::parse_all(&text.replace('\u{feff}', " "))?;
         if objects.is_empty() {
             return Err("must have a material, got nothing".to_owned());
@@ -167,13 +165,13 @@ impl MaterialSpec {
         (1..).zip(objects).map(read).collect()
     }
 
-    /// With other values for some parameters, each `NAME=VALUE`. A value is JSON, a word, or
-    /// numbers between commas.
+    /// Returns a copy in which some parameters are replaced, each by an assignment `NAME=VALUE`. A value is JSON, a word, or numbers
+    /// separated by commas.
     ///
     /// # Errors
     ///
-    /// If there is no such parameter, it is given twice, or a value is not legal: the parameter and
-    /// the problem.
+    /// Returns an error that names the parameter and the problem if the model has no such parameter, if the parameter is given twice,
+    /// or if the value is not legal.
     pub fn set(&self, assignments: &[String]) -> Result<Self, String> {
         let fields = self.model.fields();
         let names = names_of(fields);
@@ -203,7 +201,7 @@ impl MaterialSpec {
     }
 }
 
-/// The values as `hairis eval` reads them.
+/// Returns the values of all given parameters as the JSON object that `hairis eval` reads.
 #[must_use]
 pub fn values_json(values: &Values) -> serde_json::Value {
     let json = |field: &Field| match field.kind {
@@ -220,7 +218,7 @@ pub fn values_json(values: &Values) -> serde_json::Value {
         .collect()
 }
 
-/// The value of an assignment.
+/// Parses the value of an assignment: as JSON, else as a list of JSON values between commas, else as a string.
 fn value_of(text: &str) -> Json {
     let text = text.trim();
     let parse = |text: &str| Json::parse(text).ok();
@@ -234,19 +232,19 @@ fn names_of(fields: &[Field]) -> Vec<&'static str> {
     fields.iter().map(|field| field.name).collect()
 }
 
-/// The first field of the group that a field belongs to: exactly one of a group has a value.
+/// Returns the name of the first field in the group of `field`; exactly one field of a group has a value.
 fn head(field: &Field) -> &'static str {
     field.instead_of.unwrap_or(field.name)
 }
 
-/// The field that values have in place of another one, or that field itself.
+/// Returns the field of the group of `field` that has a value: another field in its place, or the field itself.
 #[must_use]
 pub fn in_place_of(field: &Field, values: &Values) -> Option<&'static Field> {
     let mut fields = values.fields().iter();
     fields.find(|other| values.has(other.name) && head(other) == head(field))
 }
 
-/// Checks that every field is given which must be: one of each group.
+/// Checks that every required field is given, and one field of each group.
 fn check_present(fields: &[Field], given: &Fields) -> Result<(), String> {
     for field in fields.iter().filter(|field| field.instead_of.is_none()) {
         let group = fields.iter().filter(|other| head(other) == field.name);
@@ -263,7 +261,8 @@ fn check_present(fields: &[Field], given: &Fields) -> Result<(), String> {
     Ok(())
 }
 
-/// Values with those that `given` has in place of others, rounded, and as they are in the input.
+/// Replaces the values that `given` names, and clears the other fields of their groups. Returns the values rounded to single precision,
+/// and as they are in the input.
 fn replaced(
     path: &str,
     mut values: Values,
@@ -302,8 +301,7 @@ fn replaced(
     Ok((values, exact))
 }
 
-/// A refusal by the rule of [`ParamError`], with the field's name and value as they are in the
-/// input.
+/// Formats a refusal by the rule of [`ParamError`], with the name and the value of the field as they are in the input.
 fn refused(path: &str, fields: &[Field], error: &ParamError, exact: &Values<f64>) -> String {
     let Some((field, number)) = Field::refused(fields, error) else {
         return refusal("params", error.to_string());
@@ -321,7 +319,7 @@ fn refused(path: &str, fields: &[Field], error: &ParamError, exact: &Values<f64>
     refusal(&(join(path, field.name) + &item), problem)
 }
 
-/// The nearest number of single precision.
+/// Returns the nearest number of single precision, or an infinity if `x` is too large for it.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "single precision is what is asked for"
@@ -336,7 +334,7 @@ mod tests {
     use super::*;
     use hairis_variants::{ChiangParams, KajiyaKayParams, Parameters};
 
-    /// The parameters that a text gives, or the refusal.
+    /// Parses the parameters that a text gives, or returns the refusal.
     fn params<P: Parameters>(text: &str) -> Result<P, String> {
         let given = Json::parse(text)?.fields("params", &names_of(P::FIELDS))?;
         check_present(P::FIELDS, &given)?;

@@ -1,11 +1,11 @@
-//! An artist's controls as numbers in a row.
+//! Artist's controls as numbers in a row, and their conversion to and from the parameters.
 
 use crate::slot;
 use hairis::params::{ArtistControls, Glints, Highlight, Transmission};
 use hairis::{HairParams, ParamError};
 use hairis_variants::Parameters;
 
-/// A control: its name in refusals, how many numbers it has, its unit, and the range of its slider.
+/// Control: its name in error messages, its count of numbers, its unit, and the range of its slider.
 pub(crate) struct Control {
     pub(crate) name: &'static str,
     pub(crate) width: usize,
@@ -38,7 +38,7 @@ const fn control(name: &'static str, width: usize, unit: &'static str, range: [f
     }
 }
 
-/// Every control, in the order of the numbers.
+/// Controls in the order of the numbers.
 pub(crate) const CONTROLS: &[Control] = &[
     color("primary.color"),
     intensity("primary.intensity", 1.0),
@@ -58,7 +58,7 @@ pub(crate) const CONTROLS: &[Control] = &[
     width("glints.azimuthal_width_deg"),
 ];
 
-/// Replaces the numbers of the controls by those of the fields of the parameters.
+/// Replaces the numbers of the controls by the numbers of the corresponding parameters.
 pub(crate) fn params(numbers: &mut [f32; 32]) -> Result<(), ParamError> {
     let [
         r0,
@@ -116,7 +116,8 @@ pub(crate) fn params(numbers: &mut [f32; 32]) -> Result<(), ParamError> {
     Ok(())
 }
 
-/// The controls of these parameters: their largest channel is the intensity, and the rest the colour.
+/// Returns the controls of these parameters. The largest channel of a colour is the intensity, and the channels relative to it are the
+/// colour.
 pub(crate) fn controls(params: &HairParams) -> [f32; 22] {
     let d = params.desc();
     let tint = |rgb: [f32; 3]| {

@@ -1,4 +1,4 @@
-//! The calls of each model of the list.
+//! Table of the functions of each model in the list, chosen by index at run time.
 
 use crate::memory::COLUMN;
 use crate::slot::Slot;
@@ -7,10 +7,10 @@ use hairis::simd::{LaneStruct, Path, f32x8};
 use hairis::{Hit, Vec3x8};
 use hairis_variants::{ModelId, Registered, Visitor};
 
-/// Columns that a call reads and writes.
+/// Columns that a function reads its arguments from and writes its results to.
 type Columns = [[f32; COLUMN]];
 
-/// The calls of a model.
+/// Functions of one model.
 pub(crate) struct Calls {
     pub(crate) eval: fn(&Slot, &mut Columns, usize),
     pub(crate) sample: fn(&Slot, &mut Columns, usize),
@@ -38,23 +38,23 @@ impl Calls {
     }
 }
 
-/// The model of an index; of one that there is not, the first.
+/// Returns the model at an index of the list, or the first model if the index is beyond the list.
 pub(crate) fn model_at(index: usize) -> ModelId {
     *ModelId::ALL.get(index).unwrap_or(&ModelId::ALL[0])
 }
 
-/// Whether the model stands for all of its name where nothing is sampled; the code of the others is left out.
+/// Returns true if the model represents all models of its name where nothing is sampled. The code of the others is left out.
 const fn is_first<M: Registered>() -> bool {
     ModelId::of::<M>().is_default()
 }
 
-/// Eight numbers of a column.
+/// Returns the eight numbers of a column that begin at `first`.
 fn packet(column: &[f32; COLUMN], first: usize) -> f32x8 {
     let lanes = column[first..].first_chunk::<8>();
     f32x8::new(*lanes.unwrap_or(&[0.0; 8]))
 }
 
-// Packets, not columns: those would be compiled for each set of results that callers may leave out.
+// Calls with packets, because the functions on columns would be compiled for each set of results that callers may leave out.
 fn eval<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize) {
     let bsdf = slot.bsdf::<M>();
     for first in (0..count).step_by(8) {
@@ -69,7 +69,7 @@ fn eval<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize) {
     }
 }
 
-// One sample and one hit at a time: the code of packets is twice as long, and neither waits for these.
+// Computes one sample or one hit at a time, because the code of packets is twice as long and the page does not wait for either.
 fn sample<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize) {
     let bsdf = slot.bsdf::<M>();
     for place in 0..count {

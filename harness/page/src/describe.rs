@@ -1,4 +1,4 @@
-//! The list of models as JSON.
+//! JSON text that lists the models, their fields and presets, and the artist's controls.
 
 use crate::artist::CONTROLS;
 use crate::memory::{COLUMN, Text};
@@ -10,7 +10,7 @@ macro_rules! say {
     ($text:expr, $($arguments:tt)*) => { $text.say(&format_args!($($arguments)*)) };
 }
 
-/// A string of JSON.
+/// Text that is displayed as a JSON string.
 struct Quoted<'a>(&'a str);
 
 impl Display for Quoted<'_> {
@@ -27,7 +27,7 @@ impl Display for Quoted<'_> {
     }
 }
 
-/// A list of JSON.
+/// Items that are displayed as a JSON array.
 struct List<I>(I);
 
 impl<I: Iterator<Item: Display> + Clone> Display for List<I> {
@@ -45,7 +45,7 @@ fn quoted<'a>(words: &'a [&'a str]) -> List<impl Iterator<Item = Quoted<'a>> + C
     List(words.iter().map(|word| Quoted(word)))
 }
 
-/// A field as an object of JSON.
+/// Field that is displayed as a JSON object.
 struct FieldText<'a>(&'a Field);
 
 impl Display for FieldText<'_> {
@@ -90,7 +90,7 @@ impl Display for FieldText<'_> {
     }
 }
 
-/// Values as the object `params` of `hairis eval`.
+/// Values that are displayed as the object `params` of `hairis eval`.
 struct Params(Values);
 
 impl Display for Params {
@@ -113,7 +113,7 @@ impl Display for Params {
     }
 }
 
-/// Writes the object: `models`, `artist` and `column`.
+/// Writes the JSON object with the keys `column`, `models` and `artist`.
 pub(crate) fn write(text: &mut Text) {
     struct Facts;
     impl Visitor for Facts {

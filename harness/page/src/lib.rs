@@ -1,4 +1,4 @@
-//! The kernels as a WebAssembly module: numbers in linear memory, and functions of numbers.
+//! Kernels as a WebAssembly module, whose functions take numbers and exchange arrays through linear memory.
 //!
 //! The host writes parameters, directions and random numbers into the arrays that `numbers`, `map` and `work` point to, calls a
 //! function, and reads results from the same arrays. Every function runs to its end before the host calls the next.
@@ -14,14 +14,14 @@ use calls::{Calls, model_at};
 use hairis::Hit;
 use memory::{COLUMN, Memory, memory};
 
-/// No input panics, but `core` has code for it.
+/// Traps. No input leads to a panic, but `core` contains code that panics.
 #[cfg(target_arch = "wasm32")]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     core::arch::wasm32::unreachable()
 }
 
-/// The list of models, their fields and presets, and the artist's controls, as JSON; returns the length of the text.
+/// Writes the list of models, their fields and presets, and the artist's controls as JSON. Returns the length of the text.
 #[unsafe(no_mangle)]
 pub extern "C" fn describe() -> usize {
     let text = memory().text;
@@ -30,39 +30,40 @@ pub extern "C" fn describe() -> usize {
     text.len
 }
 
-/// Text that the last call left: UTF-8.
+/// Returns the address of the text that the last call wrote, as UTF-8.
 #[unsafe(no_mangle)]
 pub extern "C" fn text() -> *const u8 {
     memory().text.bytes.as_ptr()
 }
 
-/// Numbers of parameters, in the order of the fields.
+/// Returns the address of the numbers of parameters, in the order of the fields.
 #[unsafe(no_mangle)]
 pub extern "C" fn numbers() -> *mut f32 {
     memory().numbers.as_mut_ptr()
 }
 
-/// Columns of the map of slot 0 or 1: three of directions, three of values, one of densities.
+/// Returns the address of the columns of a slot's map: three of directions, three of values, and one of densities. Only the lowest bit
+/// of `slot` counts.
 #[unsafe(no_mangle)]
 pub extern "C" fn map(slot: usize) -> *mut f32 {
     memory().maps[slot & 1].as_flattened_mut().as_mut_ptr()
 }
 
-/// Columns of everything else, as the functions below use them.
+/// Returns the address of the columns for everything else, which each function below uses in its own way.
 #[unsafe(no_mangle)]
 pub extern "C" fn work() -> *mut f32 {
     memory().work.as_flattened_mut().as_mut_ptr()
 }
 
-/// Numbers from the start of a column to that of the next.
+/// Returns the number of `f32` values from the start of a column to the start of the next.
 #[unsafe(no_mangle)]
 pub extern "C" fn column() -> usize {
     COLUMN
 }
 
-/// Sets the material of a slot: a model of the list with the `numbers` of the fields whose bit is set in `given`.
+/// Sets the material of a slot: a model of the list, with those fields of `numbers` whose bit is set in `given`.
 ///
-/// Returns 0, or the length of a refusal; the slot keeps its material then.
+/// Returns 0, or the length of an error message, in which case the slot keeps its material.
 #[unsafe(no_mangle)]
 pub extern "C" fn set_material(slot: usize, model: usize, given: u32) -> usize {
     let Memory {
@@ -79,9 +80,9 @@ pub extern "C" fn set_material(slot: usize, model: usize, given: u32) -> usize {
     text.len
 }
 
-/// The parameters of an artist's controls, which are read from `numbers` and replaced by the numbers of the fields.
+/// Converts an artist's controls to parameters: reads the controls from `numbers` and replaces them by the numbers of the fields.
 ///
-/// Returns 0, or the length of a refusal.
+/// Returns 0, or the length of an error message.
 #[unsafe(no_mangle)]
 pub extern "C" fn from_artist() -> usize {
     let Memory { numbers, text, .. } = memory();
@@ -92,7 +93,7 @@ pub extern "C" fn from_artist() -> usize {
     text.len
 }
 
-/// The artist's controls of a slot's material, in `numbers`; of the default hair if its model has none.
+/// Writes the artist's controls of a slot's material to `numbers`, or those of the default hair if the model has no such controls.
 #[unsafe(no_mangle)]
 pub extern "C" fn to_artist(slot: usize) {
     let Memory { slots, numbers, .. } = memory();
@@ -100,7 +101,7 @@ pub extern "C" fn to_artist(slot: usize) {
     numbers[..controls.len()].copy_from_slice(&controls);
 }
 
-/// Sets the view of a slot: `wo` in the frame of the fibre, the offset `h`, and the lobes as bits.
+/// Sets the view of a slot: `wo` in the frame of the fibre, the offset `h`, and one bit per lobe that is switched on.
 #[unsafe(no_mangle)]
 pub extern "C" fn set_view(slot: usize, x: f32, y: f32, z: f32, h: f32, lobes: u32) {
     let slot = &mut memory().slots[slot & 1];
@@ -108,9 +109,9 @@ pub extern "C" fn set_view(slot: usize, x: f32, y: f32, z: f32, h: f32, lobes: u
     slot.lobes = lobes;
 }
 
-/// Values and densities of `count` directions of a slot's map, or of `work` with columns in the same order.
+/// Evaluates values and densities of `count` directions in a slot's map, or in columns of `work` in the same order.
 ///
-/// `model` may have another sampler than the slot's.
+/// The sampler of `model` may differ from that of the slot's model.
 #[unsafe(no_mangle)]
 pub extern "C" fn eval(slot: usize, model: usize, of_map: bool, count: usize) {
     let Memory {
@@ -124,16 +125,16 @@ pub extern "C" fn eval(slot: usize, model: usize, of_map: bool, count: usize) {
     (Calls::of(model_at(model)).eval)(&slots[slot & 1], columns, count.min(COLUMN));
 }
 
-/// Samples of `count` triples of uniform numbers in the first three columns of `work`; then follow direction, weight, density and
-/// slot of the lobe, in eight columns.
+/// Draws samples with `count` triples of uniform numbers from the first three columns of `work`. The next eight columns receive
+/// direction, weight, density and slot of the lobe.
 #[unsafe(no_mangle)]
 pub extern "C" fn sample(slot: usize, model: usize, count: usize) {
     let Memory { slots, work, .. } = memory();
     (Calls::of(model_at(model)).sample)(&slots[slot & 1], work, count.min(COLUMN));
 }
 
-/// Values of `count` hits on a slot's material, each with a view and a direction of its own: `wo` in the first three columns of
-/// `work`, then `h`, `wi`, and the results.
+/// Evaluates `count` hits on a slot's material, each with a view and a direction of its own. The columns of `work` are `wo`, `h` and
+/// `wi`, followed by the values.
 #[unsafe(no_mangle)]
 pub extern "C" fn eval_hits(slot: usize, count: usize) {
     let Memory { slots, work, .. } = memory();
@@ -141,8 +142,8 @@ pub extern "C" fn eval_hits(slot: usize, count: usize) {
     (Calls::of(slot.first()).hits)(slot, work, count.min(COLUMN));
 }
 
-/// Directional albedos of all four lobes, linear RGB, for `count` inclinations of the view, whose sines are in the first column of
-/// `work`: twelve columns follow, by lobe and channel.
+/// Computes the directional albedos of all four lobes in linear RGB, for `count` inclinations of the view. The first column of `work`
+/// holds the sines of the inclinations; twelve columns follow, by lobe and channel.
 #[unsafe(no_mangle)]
 pub extern "C" fn albedos(slot: usize, count: usize) {
     let Memory { slots, work, .. } = memory();
@@ -150,8 +151,8 @@ pub extern "C" fn albedos(slot: usize, count: usize) {
     (Calls::of(slot.first()).albedos)(slot, work, count.min(COLUMN));
 }
 
-/// Constants of a slot's material, in the order in which generated shaders take them, in the first column of `work`; returns their
-/// count.
+/// Writes the constants of a slot's material to the first column of `work`, in the order in which generated shaders take them. Returns
+/// the number of constants.
 #[unsafe(no_mangle)]
 pub extern "C" fn constants(slot: usize) -> usize {
     let Memory { slots, work, .. } = memory();

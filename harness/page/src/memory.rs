@@ -1,14 +1,14 @@
-//! The module's memory: one piece, of which the host sees the arrays.
+//! Memory of the module: one static piece, whose arrays are visible to the host.
 
 use crate::slot::Slot;
 use core::cell::UnsafeCell;
 use core::fmt;
 
-/// Numbers from the start of a column to that of the next: a map of 512 by 256, and some that keep columns from meeting at the
-/// same addresses modulo 4 KiB.
+/// Number of `f32` values from the start of a column to the start of the next: a map of 512 by 256, and some more. The excess keeps
+/// columns from meeting at the same addresses modulo 4 KiB.
 pub(crate) const COLUMN: usize = 512 * 256 + 48;
 
-/// All that the module keeps.
+/// Exclusive references to everything that the module keeps between calls.
 pub(crate) struct Memory {
     pub(crate) text: &'static mut Text,
     pub(crate) numbers: &'static mut [f32; 32],
@@ -17,7 +17,7 @@ pub(crate) struct Memory {
     pub(crate) work: &'static mut [[f32; COLUMN]; 14],
 }
 
-/// Text for the host: what does not fit is left out.
+/// Text for the host, cut off where the buffer is full.
 pub(crate) struct Text {
     pub(crate) bytes: [u8; 1 << 16],
     pub(crate) len: usize,
@@ -44,7 +44,7 @@ impl fmt::Write for Text {
     }
 }
 
-/// Memory that starts as zeros, and takes no space in the file.
+/// Memory that starts as zeros and therefore takes no space in the file.
 struct Zeros {
     text: Text,
     numbers: [f32; 32],
@@ -52,7 +52,7 @@ struct Zeros {
     work: [[f32; COLUMN]; 14],
 }
 
-/// A value of which one call at a time has the only reference.
+/// Value to which one call at a time holds the only reference.
 struct Single<T>(UnsafeCell<T>);
 
 // SAFETY: the module has one thread.
@@ -69,9 +69,9 @@ static ZEROS: Single<Zeros> = Single(UnsafeCell::new(Zeros {
 }));
 static SLOTS: Single<[Slot; 2]> = Single(UnsafeCell::new([Slot::NONE; 2]));
 
-/// The memory, for the length of one call of the host.
+/// Returns the memory for the duration of one call from the host.
 pub(crate) fn memory() -> Memory {
-    // SAFETY: each function of the module asks once, and no function of the module calls another.
+    // SAFETY: each function of the module calls this once, and no function of the module calls another.
     let (zeros, slots) = unsafe { (&mut *ZEROS.0.get(), &mut *SLOTS.0.get()) };
     Memory {
         text: &mut zeros.text,

@@ -1,4 +1,4 @@
-//! Slots: a material and a view of it, whatever the model.
+//! Slots, each of which holds a material of any model and a view of the material.
 
 use core::f32::consts::FRAC_1_SQRT_2;
 use hairis::model::Model;
@@ -6,17 +6,17 @@ use hairis::simd::Vec3x;
 use hairis::{Bsdf, HairParams, Hit, Lobe, LobeMask, Material, ParamError};
 use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
 
-/// A material and a view of it.
+/// Material of any model with a view of the material.
 pub(crate) struct Slot {
-    /// The material, once there is one.
+    /// Material, once the host has set one.
     material: Option<(ModelId, Values)>,
     pub(crate) hit: Hit,
-    /// Bits of the lobes.
+    /// Bits of the lobes that are switched on.
     pub(crate) lobes: u32,
 }
 
 impl Slot {
-    /// No material, seen from 45 degrees.
+    /// Slot without a material, viewed at an inclination of 45 degrees.
     pub(crate) const NONE: Self = Self {
         material: None,
         hit: Hit {
@@ -30,7 +30,7 @@ impl Slot {
         lobes: 0b1111,
     };
 
-    /// Sets the material to that of the fields whose bit is `given`, and `numbers` to those of all fields.
+    /// Sets the material from those fields of `numbers` whose bit in `given` is set, and then writes the numbers of all fields back.
     pub(crate) fn set(
         &mut self,
         id: ModelId,
@@ -43,7 +43,7 @@ impl Slot {
         Ok(())
     }
 
-    /// The first entry of the material's name: the one that stands for all of them where nothing is sampled.
+    /// Returns the first model with the name of the slot's model, which represents all of them where nothing is sampled.
     pub(crate) fn first(&self) -> ModelId {
         let name = self.material.map_or("", |(id, _)| id.name());
         ModelId::find(name, None).unwrap_or(ModelId::ALL[0])
@@ -56,7 +56,7 @@ impl Slot {
             .unwrap_or_default()
     }
 
-    /// The parameters of the published model, if the slot has that or a variant of it; else its default.
+    /// Returns the parameters if the slot has the published model or a variant of it, and the default parameters otherwise.
     pub(crate) fn hair(&self) -> HairParams {
         let values = self.material.map(|(_, values)| values);
         let values = values.filter(|values| values.fields() == HairParams::FIELDS);
@@ -73,7 +73,7 @@ impl Slot {
         self.restricted(&self.material::<M>().prepare(self.hit))
     }
 
-    /// The view with the slot's lobes.
+    /// Returns the BSDF restricted to the slot's lobes.
     pub(crate) fn restricted<M: Model>(&self, bsdf: &Bsdf<M>) -> Bsdf<M> {
         let mut chosen = [Lobe::R; Lobe::COUNT];
         let mut count = 0;
@@ -91,7 +91,7 @@ impl Slot {
     }
 }
 
-/// Parameters of numbers, checked, as the values of all fields.
+/// Visitor that makes parameters from numbers, checks them, and returns the values of all fields.
 struct Check<'a> {
     numbers: &'a [f32],
     given: u32,
@@ -101,13 +101,13 @@ impl Visitor for Check<'_> {
     type Output = Result<Values, ParamError>;
 
     fn visit<M: Registered>(self) -> Self::Output {
-        // Fields that are left out have their defaults, unless others stand for them.
+        // Fields that are not given have their defaults, unless other fields stand in for them.
         let mut values = M::Params::default().values();
         let mut at = 0;
         for (index, field) in M::Params::FIELDS.iter().enumerate() {
             let width = field.kind.width();
             if self.given >> index & 1 == 1 {
-                // The count of numbers is the field's.
+                // Cannot fail, because the slice has as many numbers as the field.
                 let _ = values.set_at(index, &self.numbers[at..at + width]);
             }
             at += width;
@@ -116,7 +116,7 @@ impl Visitor for Check<'_> {
     }
 }
 
-/// Writes the numbers of every field that has a value.
+/// Writes the numbers of every field that has a value, each field at its place among all fields.
 pub(crate) fn write(values: &Values, to: &mut [f32]) {
     let mut at = 0;
     for (index, field) in values.fields().iter().enumerate() {

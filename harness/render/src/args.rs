@@ -1,4 +1,4 @@
-//! The raw flags, and what clap cannot check.
+//! Command-line flags as clap parses them, with the checks that clap cannot express.
 
 use crate::film::Crop;
 use crate::formats::{Curve, Up};
@@ -281,7 +281,7 @@ pub struct Figures {
     pub out: PathBuf,
 }
 
-/// Width and height in pixels: 1 to 16384 each.
+/// Width and height of a picture in pixels, parsed from `WxH`: 1 to 16384 each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size(pub [u32; 2]);
 
@@ -299,7 +299,7 @@ impl FromStr for Size {
     }
 }
 
-/// A part of a picture.
+/// Part of a picture, parsed from `X,Y,W,H` in pixels, whose width and height are above zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CropArg(pub Crop);
 
@@ -325,11 +325,11 @@ impl FromStr for CropArg {
 }
 
 impl Render {
-    /// The part of the picture to render.
+    /// Returns the part of the picture to render, which is the whole picture unless `--crop` is given.
     ///
     /// # Errors
     ///
-    /// If it does not lie within the picture.
+    /// Returns a usage error if the part does not lie within the picture.
     pub fn part(&self) -> Result<Crop, Error> {
         let Size([width, height]) = self.size;
         let Some(CropArg(crop)) = self.crop else {
@@ -345,11 +345,11 @@ impl Render {
         )))
     }
 
-    /// Checks what depends on one flag alone.
+    /// Checks the ranges of the flags, and rejects flags that do not go together.
     ///
     /// # Errors
     ///
-    /// If a count or a number is out of its range.
+    /// Returns a usage error if a count or a number is out of its range, or if another flag rules out a flag that is given.
     pub fn check(&self) -> Result<(), Error> {
         if let Some(spp) = self.spp.filter(|spp| !(1..=1 << 20).contains(spp)) {
             return refuse("--spp", "from 1 to 1048576", &spp);
@@ -372,7 +372,7 @@ impl Render {
         self.check_integrator()
     }
 
-    /// Refuses flags that the integrator of the picture does not use.
+    /// Rejects flags that the integrator of the picture does not use.
     fn check_integrator(&self) -> Result<(), Error> {
         let integrator = self
             .integrator
@@ -394,11 +394,11 @@ impl Render {
 }
 
 impl Fit {
-    /// Checks what depends on one flag alone.
+    /// Checks that the counts and numbers of the flags lie within their ranges.
     ///
     /// # Errors
     ///
-    /// If a count or a number is out of its range.
+    /// Returns a usage error that names the first flag whose count or number is out of its range.
     pub fn check(&self) -> Result<(), Error> {
         if !(1..=2).contains(&self.depth) {
             return refuse("--depth", "1 or 2", &self.depth);
@@ -415,11 +415,11 @@ impl Fit {
 }
 
 impl Place {
-    /// Checks what depends on one flag alone.
+    /// Checks that the numbers of the flags lie within their ranges.
     ///
     /// # Errors
     ///
-    /// If a number is out of its range.
+    /// Returns a usage error that names the first flag whose number is out of its range.
     pub fn check(&self) -> Result<(), Error> {
         if let Some(backdrop) = self
             .backdrop
@@ -437,7 +437,7 @@ impl Place {
     }
 }
 
-/// Refuses the value of a flag.
+/// Returns the usage error for a flag whose value is out of its range.
 fn refuse(flag: &str, range: &str, got: &dyn core::fmt::Display) -> Result<(), Error> {
     Err(Error::Usage(format!("{flag} must be {range}, got {got}")))
 }

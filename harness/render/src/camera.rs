@@ -1,9 +1,9 @@
-//! A pinhole camera.
+//! Pinhole camera, which maps the points of a picture to rays.
 
 use crate::tree::Ray;
 use glam::{Quat, Vec3};
 
-/// Camera of the picture.
+/// Pinhole camera that maps each point of a picture to a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     eye: Vec3,
@@ -16,8 +16,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera at `eye` that looks at `at`, with a vertical angle of view in degrees, for pictures of `size` pixels.
-    /// Up in the picture is the world's y; for a camera that looks along y, it is the world's z.
+    /// Returns a camera at `eye` that looks at `at`, with a vertical angle of view in degrees, for pictures of `size` pixels.
+    /// Up in the picture is the world's y, or its z for a camera that looks along y.
     #[must_use]
     pub fn new(eye: Vec3, at: Vec3, view_deg: f32, size: [u32; 2]) -> Self {
         let forward = (at - eye).normalize_or(Vec3::NEG_Z);
@@ -35,7 +35,7 @@ impl Camera {
         }
     }
 
-    /// The camera after a turn about the vertical axis through a point, in degrees: from +z towards +x.
+    /// Returns the camera after a turn about the vertical axis through a point, by an angle in degrees from +z towards +x.
     #[must_use]
     pub fn orbit(&self, about: Vec3, degrees: f32) -> Self {
         let turn = |v: Vec3| Quat::from_rotation_y(degrees.to_radians()) * v;
@@ -49,13 +49,13 @@ impl Camera {
         }
     }
 
-    /// Width and height of the picture in pixels.
+    /// Returns the width and height of the picture in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// The camera mirrored in the plane x = 0: it sees a mirrored scene as a mirrored picture.
+    /// Returns the camera mirrored in the plane x = 0, which renders a mirrored scene as a mirrored picture.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         let mirror = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
@@ -69,7 +69,7 @@ impl Camera {
         }
     }
 
-    /// The ray through a point of the picture, in pixels from its upper left corner.
+    /// Returns the ray through a point of the picture, given in pixels from the upper left corner.
     #[inline]
     #[must_use]
     pub fn ray(&self, x: f32, y: f32) -> Ray {

@@ -1,4 +1,4 @@
-//! The subcommands.
+//! Subcommands of `hairis-render`, which turn flags into pictures, tables and pages.
 
 mod fit;
 mod merge;
@@ -12,11 +12,11 @@ use crate::args::Command;
 use hairis_instruments::error::Error;
 use hairis_instruments::program::check_threads;
 
-/// Runs a subcommand.
+/// Runs a subcommand of `hairis-render` with the flags that were given.
 ///
 /// # Errors
 ///
-/// Errors of the subcommand.
+/// Returns the error of the subcommand, such as a flag out of its range or a file that cannot be written.
 pub fn run(command: &Command) -> Result<(), Error> {
     check_threads();
     match command {

@@ -1,4 +1,4 @@
-//! `hairis-render figures`: samplers side by side, as pictures and as numbers, on one page.
+//! Subcommand `hairis-render figures`, which compares samplers side by side, as pictures and as numbers, on one page.
 
 mod csv;
 mod map;
@@ -29,7 +29,7 @@ use std::fs;
 use std::path::Path;
 use store::Store;
 
-/// The scenes that are compared, without maps of the caller's.
+/// Scenes that are compared if the flags name none. Maps of the caller take the place of the light of [`Name::Env`].
 const SCENES: [Name; 7] = [
     Name::Area,
     Name::AreaSoft,
@@ -42,11 +42,12 @@ const SCENES: [Name; 7] = [
 
 /// Compares samplers on every scene, and writes `report.html` with its figures as `figures.csv`,
 /// its settings as `figures.json` and an EXR file of each picture beside it. A run that was stopped
-/// goes on from what it had saved.
+/// continues from what it had saved.
 ///
 /// # Errors
 ///
-/// If paths do not converge in a scene, a map cannot be read or a file cannot be written; before anything is rendered.
+/// Returns an error if paths do not converge in a scene, a map cannot be read or a file cannot be written. All of these are checked
+/// before anything is rendered.
 pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     let plan = if flags.quick { Plan::QUICK } else { Plan::FULL };
     let plan = Plan {
@@ -61,7 +62,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         flags.scene.clone()
     };
     let mut known = Vec::new();
-    // A scene that is asked for twice is the same one.
+    // Drop repeated names, because a scene that is named twice is rendered once.
     chosen.retain(|name| {
         let is_new = !known.contains(name);
         known.push(*name);
@@ -107,7 +108,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         (true, true) => &models::PRESETS[..1],
         (true, false) => &models::PRESETS,
     };
-    // The shard's own: every so many of scenes and models.
+    // Each shard owns every n-th of the scenes and models.
     let owns = |place: usize| flags.shard.is_none_or(|shard| shard.owns(place));
     let count = scenes.len();
     let scenes: Vec<_> = (0..)
@@ -145,7 +146,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         }
         measured.write_pictures(&flags.out, &stem)?;
         all.push(measured);
-        // After every scene, so that a run that is stopped leaves a page.
+        // Write after every scene, so that a run that is stopped leaves a page.
         page::write(&all, &[], &plan, flags, &flags.out)?;
         csv::write(&all, &[], &settings, &flags.out)?;
     }
@@ -183,7 +184,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     print(lines)
 }
 
-/// Hair with other values, which its name tells.
+/// Sets values of the hair, and adds the assignments to its name.
 fn set(hair: Choice, assignments: &[String]) -> Result<Choice, Error> {
     if assignments.is_empty() {
         return Ok(hair);
@@ -195,7 +196,7 @@ fn set(hair: Choice, assignments: &[String]) -> Result<Choice, Error> {
     })
 }
 
-/// Makes the folder, and sees that files can be written into it.
+/// Makes the folder, and checks that files can be written into it.
 fn prepare(out: &Path) -> Result<(), Error> {
     let refuse = |source| Error::Output {
         path: out.to_owned(),

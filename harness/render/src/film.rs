@@ -1,4 +1,4 @@
-//! Film: sums over samples, tile by tile.
+//! Film of a picture, which holds the sums over samples, tile by tile.
 
 use crate::transport::Profile;
 use glam::Vec3;
@@ -7,11 +7,11 @@ use hairis_instruments::sequence::mix;
 use hairis_instruments::shard::Shard;
 use std::collections::HashMap;
 
-/// Side of a tile in pixels, at most.
+/// Largest side of a tile in pixels.
 pub const TILE: u32 = 32;
 
-/// Side of the tiles of a picture of which each sample is so many camera rays: smaller for many,
-/// because a run saves whole tiles.
+/// Returns the side of the tiles of a picture with `rays` camera rays per sample. Tiles are smaller
+/// for many rays, because a run saves whole tiles.
 #[must_use]
 pub fn side(rays: u32) -> u32 {
     const MOST: u32 = 16 * TILE * TILE;
@@ -36,7 +36,7 @@ pub struct Crop {
 }
 
 impl Crop {
-    /// The whole of a picture.
+    /// Returns the part that is the whole of a picture of this width and height.
     #[must_use]
     pub fn whole([width, height]: [u32; 2]) -> Self {
         Self {
@@ -47,31 +47,31 @@ impl Crop {
         }
     }
 
-    /// Pixels, row by row.
+    /// Iterates over the pixels of the part, row by row.
     pub fn pixels(self) -> impl Iterator<Item = [u32; 2]> {
         (self.y..self.y + self.height)
             .flat_map(move |y| (self.x..self.x + self.width).map(move |x| [x, y]))
     }
 
-    /// Place of one of its pixels among them.
+    /// Returns the index of a pixel of the part in the order of [`pixels`](Self::pixels).
     #[must_use]
     pub fn index(self, [x, y]: [u32; 2]) -> usize {
         (y - self.y) as usize * self.width as usize + (x - self.x) as usize
     }
 
-    /// Count of pixels.
+    /// Returns the count of pixels in the part.
     #[must_use]
     pub fn len(self) -> usize {
         self.width as usize * self.height as usize
     }
 
-    /// Whether there are no pixels.
+    /// Returns true if the part has no pixels.
     #[must_use]
     pub fn is_empty(self) -> bool {
         self.len() == 0
     }
 
-    /// Tiles of at most `side` pixels a side, row by row.
+    /// Iterates over tiles of at most `side` pixels a side that cover the part, row by row.
     pub fn tiles(self, side: u32) -> impl Iterator<Item = Self> {
         let step = side as usize;
         (self.y..self.y + self.height)
@@ -88,7 +88,7 @@ impl Crop {
             })
     }
 
-    /// Whether it is one of the [`tiles`](Self::tiles) of `whole`.
+    /// Returns true if this part is one of the [`tiles`](Self::tiles) of `whole` with this side.
     #[must_use]
     pub fn is_tile_of(self, whole: Self, side: u32) -> bool {
         let one_axis = |from: u32, count: u32, start: u32, all: u32| {
@@ -102,17 +102,17 @@ impl Crop {
     }
 }
 
-/// Sums over the samples of a pixel.
+/// Sums over the samples of a pixel, of radiance and of squared luminance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sums {
-    /// Radiance, linear RGB.
+    /// Sum of the radiance, linear RGB.
     pub radiance: [f64; 3],
-    /// Square of the luminance.
+    /// Sum of the squares of the luminance.
     pub luminance_sq: f64,
 }
 
 impl Sums {
-    /// Adds a sample.
+    /// Adds the radiance of a sample, linear RGB, and the square of its luminance.
     #[inline]
     pub fn add(&mut self, radiance: Vec3) {
         let rgb = radiance.to_array().map(f64::from);
@@ -123,55 +123,55 @@ impl Sums {
     }
 }
 
-/// A tile: its place, and the sums of its pixels row by row.
+/// Tile of a film: its place, and the sums of its pixels row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tile {
-    /// Which pixels.
+    /// Pixels of the tile, as a part of the picture.
     pub place: Crop,
-    /// Their sums.
+    /// Sums of the pixels, row by row.
     pub sums: Vec<Sums>,
     /// Count of samples of each pixel.
     pub samples: u32,
-    /// Time that a thread worked on it, in seconds.
+    /// Time that a thread worked on the tile, in seconds.
     pub seconds: f64,
     /// Albedo (3), tangent (3) and distance of what the ray through each pixel's centre meets first: see
-    /// [`layers::look`](crate::layers::look). Empty where nobody has looked.
+    /// [`layers::look`](crate::layers::look). Empty until that function has looked.
     pub first: Vec<[f32; 7]>,
 }
 
 impl Tile {
-    /// Its first pixel, which tells it from the other tiles of a film.
+    /// Returns the first pixel of the tile, which distinguishes the tile from the others of a film.
     #[must_use]
     pub fn key(&self) -> [u32; 2] {
         [self.place.x, self.place.y]
     }
 
-    /// Whether there is anything in it.
+    /// Returns true if the tile has samples, or has found what its rays meet first.
     #[must_use]
     pub fn is_begun(&self) -> bool {
         self.samples > 0 || !self.first.is_empty()
     }
 }
 
-/// The sums of a picture. Tiles share nothing, so that threads may work on them in any order.
+/// Sums of a picture, tile by tile. Tiles share nothing, so that threads may work on them in any order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     crop: Crop,
     side: u32,
-    /// The tiles, row by row.
+    /// Tiles of the film, row by row.
     pub tiles: Vec<Tile>,
     /// Time by part of the work, if it was measured.
     pub profile: Profile,
 }
 
 impl Film {
-    /// No samples yet, in tiles of [`TILE`] pixels a side.
+    /// Creates a film without samples, in tiles of [`TILE`] pixels a side.
     #[must_use]
     pub fn new(crop: Crop) -> Self {
         Self::with_tiles(crop, TILE)
     }
 
-    /// No samples yet, in tiles of `side` pixels a side.
+    /// Creates a film without samples, in tiles of `side` pixels a side.
     #[must_use]
     pub fn with_tiles(crop: Crop, side: u32) -> Self {
         let tile = |place: Crop| Tile {
@@ -184,7 +184,7 @@ impl Film {
         Self::of(crop, side, crop.tiles(side).map(tile).collect())
     }
 
-    /// Makes a film of tiles of `side` pixels a side that exist already.
+    /// Creates a film from tiles of `side` pixels a side that exist already.
     #[must_use]
     pub fn of(crop: Crop, side: u32, tiles: Vec<Tile>) -> Self {
         Self {
@@ -195,7 +195,7 @@ impl Film {
         }
     }
 
-    /// Keeps the tiles of one shard. They are scattered over the picture, so that shards take about as long.
+    /// Keeps the tiles of one shard. They are scattered over the picture, so that all shards take about as long.
     #[must_use]
     pub fn shard(mut self, shard: Shard) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "any bits do")]
@@ -204,12 +204,12 @@ impl Film {
         self
     }
 
-    /// Takes the tiles of another film of the same part of the picture in place of its own. Gives
-    /// the other back, and takes none, if one of them is not among its own.
+    /// Replaces tiles of this film by the tiles of another film of the same part of the picture.
     ///
     /// # Errors
     ///
-    /// The other film.
+    /// Returns the other film, and takes no tile of it, if the parts or the sides of the tiles differ, or if
+    /// one of its tiles is not among those of this film.
     pub fn adopt(&mut self, other: Self) -> Result<(), Self> {
         let places: HashMap<[u32; 2], usize> = self.tiles.iter().map(Tile::key).zip(0..).collect();
         if (self.crop, self.side) != (other.crop, other.side)
@@ -227,7 +227,7 @@ impl Film {
         Ok(())
     }
 
-    /// Samples of a pixel, mean over the pixels.
+    /// Returns the samples per pixel, averaged over the pixels.
     #[must_use]
     pub fn mean_samples(&self) -> f64 {
         let sum = |of: fn(&Tile) -> f64| self.tiles.iter().map(of).sum::<f64>();
@@ -235,7 +235,7 @@ impl Film {
         sum(|tile| tile.place.len() as f64 * f64::from(tile.samples)) / pixels.max(1.0)
     }
 
-    /// Samples of the pixels that have most.
+    /// Returns the samples of the pixels that have most.
     #[must_use]
     pub fn most_samples(&self) -> u32 {
         self.tiles
@@ -245,7 +245,7 @@ impl Film {
             .unwrap_or(0)
     }
 
-    /// Samples that every pixel has.
+    /// Returns the count of samples that every pixel has at least.
     #[must_use]
     pub fn samples(&self) -> u32 {
         self.tiles
@@ -255,25 +255,25 @@ impl Film {
             .unwrap_or(0)
     }
 
-    /// Side of its tiles in pixels.
+    /// Returns the side of the tiles in pixels.
     #[must_use]
     pub fn side(&self) -> u32 {
         self.side
     }
 
-    /// The part of the picture that it covers.
+    /// Returns the part of the picture that the film covers.
     #[must_use]
     pub fn crop(&self) -> Crop {
         self.crop
     }
 
-    /// Time that threads worked on it, in seconds.
+    /// Returns the time that threads worked on the film, in seconds.
     #[must_use]
     pub fn seconds(&self) -> f64 {
         self.tiles.iter().map(|tile| tile.seconds).sum()
     }
 
-    /// Means over the samples.
+    /// Returns the picture of the means over the samples, which is black where there are none.
     #[must_use]
     pub fn picture(&self) -> Picture {
         let mut picture = Picture::black([self.crop.width, self.crop.height]);
@@ -287,17 +287,17 @@ impl Film {
     }
 }
 
-/// A picture: linear RGB, row by row from the upper left corner.
+/// Picture in linear RGB, row by row from the upper left corner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Radiance.
+    /// Radiance of each pixel.
     pub pixels: Vec<[f64; 3]>,
 }
 
 impl Picture {
-    /// A black picture.
+    /// Creates a picture of this width and height in which every pixel is black.
     #[must_use]
     pub fn black(size: [u32; 2]) -> Self {
         Self {
@@ -306,18 +306,18 @@ impl Picture {
         }
     }
 
-    /// Mean radiance.
+    /// Returns the mean radiance over the pixels, channel by channel.
     #[must_use]
     pub fn mean(&self) -> [f64; 3] {
         let by = 1.0 / self.pixels.len().max(1) as f64;
         core::array::from_fn(|c| self.pixels.iter().map(|pixel| pixel[c]).sum::<f64>() * by)
     }
 
-    /// The radiance of a pixel.
+    /// Returns the radiance of the pixel in column `x` and row `y`.
     ///
     /// # Panics
     ///
-    /// If it lies outside.
+    /// Panics if the pixel lies outside the picture.
     #[must_use]
     pub fn at(&self, x: u32, y: u32) -> [f64; 3] {
         assert!(
@@ -327,7 +327,7 @@ impl Picture {
         self.pixels[y as usize * self.size[0] as usize + x as usize]
     }
 
-    /// Luminance of every pixel.
+    /// Returns the luminance of every pixel, row by row from the upper left corner.
     #[must_use]
     pub fn luminances(&self) -> Vec<f64> {
         self.pixels.iter().map(|pixel| luminance(*pixel)).collect()

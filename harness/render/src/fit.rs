@@ -1,14 +1,14 @@
-//! Materials that are recovered from pictures.
+//! Materials of hair that are recovered from pictures.
 //!
 //! # Method
 //!
-//! Each iteration draws two independent sets of paths with the material that it has reached: light that hair has scattered once or
-//! twice. The derivatives of both pictures by the parameters are exact for these paths, as densities and directions stay fixed
+//! Each iteration draws two independent sets of paths with the material that it has reached, for light that hair has scattered once or
+//! twice. The derivatives of both pictures by the parameters are exact for these paths, because densities and directions stay fixed
 //! (detached sampling). The residual of one set times the derivative of the other is an unbiased estimate of the gradient of the
-//! squared error of the picture, and products of both derivatives are one of the curvature by the rule of Gauss and Newton.
+//! squared error of the picture. Products of both derivatives estimate the curvature by the rule of Gauss and Newton.
 //!
-//! A step goes to the minimum of the quadratic models of all iterations so far but for the first quarter. Their noise averages out,
-//! and the scatter of their gradients about that minimum gives standard errors.
+//! A step goes to the minimum of the sum of the quadratic models of all iterations so far, except the first quarter. The noise of the
+//! models averages out, and the scatter of their gradients about that minimum gives standard errors.
 
 mod objective;
 mod target;
@@ -25,24 +25,24 @@ use crate::transport::{Integrator, Settings};
 use hairis_instruments::error::Error;
 use hairis_variants::Values;
 
-/// Damping of the first step, relative to the squares of the derivatives; later ones have less, as the curvature is known better.
+/// Damping of the first step, relative to the squares of the derivatives. Later steps have less, because the curvature is known better.
 const DAMPING: f64 = 0.02;
 
-/// Inverse of the share of all iterations, the first ones, that no longer count.
+/// Inverse of the share of all iterations, counted from the first, that are left out of the sum of models.
 const FORGOTTEN: usize = 4;
 
-/// Settings of a fit.
+/// Settings of a fit: the fields that vary, the paths, and the count of iterations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitSettings {
-    /// Fields that stay as they are.
+    /// Names of the fields that stay as they are.
     pub fixed: Vec<String>,
-    /// Fields whose numbers are variables of their own.
+    /// Names of the fields whose numbers are variables of their own.
     pub free: Vec<String>,
     /// Count of iterations.
     pub iterations: u32,
-    /// Samples per pixel of an iteration, an even number.
+    /// Samples per pixel and iteration, an even number.
     pub samples: u32,
-    /// Most scatterings of a path: 1 or 2.
+    /// Largest number of scatterings of a path: 1 or 2.
     pub depth: u32,
     /// Seed of the paths.
     pub seed: u64,
@@ -64,21 +64,21 @@ impl Default for FitSettings {
     }
 }
 
-/// One iteration: where it was, and what it found there.
+/// Iteration of a fit: its variables, and the slope of the objective for them.
 #[derive(Clone, Debug)]
 struct Iteration {
     x: Vec<f64>,
     slope: Slope,
 }
 
-/// Result of a fit.
+/// Result of a fit: the values that were found, with their errors and the way there.
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// Names of the numbers that were fitted.
     pub names: Vec<String>,
-    /// The values that were found.
+    /// Values of the material that were found.
     pub values: Values,
-    /// The numbers that were found.
+    /// Numbers that were found, in the order of `names`.
     pub numbers: Vec<f64>,
     /// Standard errors of the numbers by the noise of the paths; the noise of the target comes on top.
     pub errors: Vec<f64>,
@@ -88,12 +88,12 @@ pub struct Fit {
     pub distances: Vec<f64>,
 }
 
-/// Fits the material of the hair of a scene to a target, from `start` on. `progress` is called with the count of iterations that are
-/// done.
+/// Fits the material of the hair of a scene to a target, from `start` on. Calls `progress` after each iteration with the count of
+/// iterations that are done.
 ///
 /// # Errors
 ///
-/// If the target shows no hair, no variable is left, or the model refuses a value.
+/// Returns an error if the target shows no hair, if no variable is left, or if the model rejects a value.
 pub fn fit(
     scene: &Scene,
     start: &Choice,
@@ -152,14 +152,14 @@ pub fn fit(
     })
 }
 
-/// The seed of the paths of an iteration.
+/// Returns the seed of the paths of an iteration.
 fn seed(seed: u64, iteration: u32) -> u64 {
     hairis_instruments::sequence::mix(seed) ^ u64::from(iteration)
 }
 
-/// The step from `x` to the minimum of the sum of the quadratic models of iterations, and the standard errors of the minimum.
+/// Returns the step from `x` to the minimum of the sum of the iterations' quadratic models, and the standard errors of that minimum.
 ///
-/// Variables that the picture hardly depends on stay where they are, with large errors, as their derivatives are damped.
+/// Variables that the picture hardly depends on stay where they are, with large errors, because their derivatives are damped.
 fn minimum(all: &[Iteration], x: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let count = x.len();
     let mut matrix = vec![vec![0.0; count]; count];
@@ -191,7 +191,7 @@ fn minimum(all: &[Iteration], x: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let Some(step) = solve(&mut damped.clone(), &slope) else {
         return (vec![0.0; count], vec![f64::INFINITY; count]);
     };
-    // Scatter of the steps that single iterations ask for about the common one.
+    // Scatter, about the common step, of the steps to the minima of single iterations.
     let end: Vec<f64> = x.iter().zip(&step).map(|(x, step)| x + step).collect();
     let mut errors = vec![0.0; count];
     for one in all {

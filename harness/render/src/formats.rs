@@ -1,5 +1,5 @@
-//! Files of hair and of heads: read with every number checked. Hair is written for other renderers,
-//! too.
+//! Files of hair and of heads, which are read with every number checked. Hair is also written for
+//! other renderers.
 
 mod bytes;
 mod counted;
@@ -32,7 +32,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Files are at most this long, in bytes.
+/// Largest length of a file in bytes.
 const LONGEST_FILE: u64 = 1 << 31;
 
 /// The axis of a file that points up. The renderer's is y.
@@ -70,52 +70,51 @@ pub enum Curve {
     BSpline,
 }
 
-/// How a file of hair is read.
+/// Options by which a file of hair is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Import {
-    /// Radius at the roots in centimetres, instead of the file's, which is not looked at; strands
-    /// then taper as procedural ones do.
+    /// Radius at the roots in centimetres, instead of the radii of the file, which are then not read.
+    /// Strands taper as procedural ones do.
     pub radius: Option<f32>,
-    /// Centimetres per unit of the file. Without it, they depend on the format.
+    /// Centimetres per unit of the file. Without a value, they depend on the format.
     pub scale: Option<f32>,
-    /// The axis that points up.
+    /// Axis of the file that points up.
     pub up: Up,
-    /// How nodes make a strand.
+    /// Curve that the nodes of a strand make.
     pub curve: Curve,
-    /// Strands beside those of the file.
+    /// Strands that are added beside those of the file.
     pub follow: Follow,
 }
 
-/// Hair out of a file.
+/// Hair that was read from a file, with remarks on what was changed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Imported {
-    /// The hair.
+    /// Strands of the hair.
     pub strands: Strands,
     /// Centimetres per unit of the file.
     pub scale: f32,
-    /// Lines for the log: what was dropped, changed or not used.
+    /// Lines for the log, which state what was dropped, changed or not used.
     pub remarks: Vec<String>,
 }
 
-/// Reads a file of hair, and returns the hair with a digest of the bytes that were read: a pipe can
-/// be read only once. Its format is that of the content; the ending of the name decides where the
-/// content fits several.
+/// Reads a file of hair, and returns the hair with a digest of the bytes, because a pipe can be read
+/// only once. The content decides the format; if it fits several, the ending of the name decides.
 ///
 /// # Errors
 ///
-/// If the file cannot be read, or anything that is needed is not as its format has it; see
-/// [`Problem`]. No file makes this panic, or take more memory than 64 times its length, times the
-/// strands that follow each.
+/// Returns an error if the file cannot be read, or if anything that is needed is not as its format
+/// has it; see [`Problem`]. No file causes a panic, or takes more memory than 64 times its length,
+/// times the strands that follow each.
 pub fn import(path: &Path, options: &Import) -> Result<(Imported, u64), ImportError> {
     let data = read(path)?;
     Ok((import_bytes(path, &data, options)?, digest(&data)))
 }
 
-/// Reads what a file of this name holds.
+/// Reads hair from the content of a file with this name.
 ///
 /// # Errors
 ///
-/// See [`import`].
+/// Returns the errors of [`import`], except those of reading the file.
 pub fn import_bytes(path: &Path, data: &[u8], options: &Import) -> Result<Imported, ImportError> {
     let refuse = |problem| ImportError {
         path: path.to_owned(),
@@ -143,7 +142,7 @@ pub fn import_bytes(path: &Path, data: &[u8], options: &Import) -> Result<Import
     raw.build(options, bytes.len()).map_err(wrong)
 }
 
-/// Refuses a number that is not finite, not above 0, or out of all reason.
+/// Rejects a number that is not finite, not above 0, or out of all reason.
 fn check_option(name: &'static str, value: Option<f32>) -> Result<(), Problem> {
     match value.filter(|value| !(1e-6..=1e6).contains(value)) {
         Some(value) => Err(Problem::Option { name, value }),
@@ -151,7 +150,7 @@ fn check_option(name: &'static str, value: Option<f32>) -> Result<(), Problem> {
     }
 }
 
-/// The bytes of a file that is not too long.
+/// Reads the bytes of a file that is not too long.
 fn read(path: &Path) -> Result<Vec<u8>, ImportError> {
     let refuse = |problem| ImportError {
         path: path.to_owned(),
@@ -161,7 +160,7 @@ fn read(path: &Path) -> Result<Vec<u8>, ImportError> {
     let unread = |source| refuse(Problem::Read(source));
     let file = File::open(path).map_err(unread)?;
     let mut data = Vec::new();
-    // One byte more than allowed shows that there are more.
+    // Reading one byte more than allowed shows whether the file is too long.
     let too_long = file.metadata().map_err(unread)?.len() > LONGEST_FILE;
     if !too_long {
         file.take(LONGEST_FILE + 1)
@@ -174,5 +173,5 @@ fn read(path: &Path) -> Result<Vec<u8>, ImportError> {
     Ok(data)
 }
 
-/// A problem, and the byte that shows it.
+/// Problem with a file, after the offset of the byte that shows it.
 type Wrong = (u64, Problem);

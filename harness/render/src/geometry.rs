@@ -1,4 +1,4 @@
-//! Strands, and what makes them.
+//! Strands of hair, procedural hair, and the meshes of heads.
 
 mod bounds;
 mod groom;

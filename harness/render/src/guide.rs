@@ -1,4 +1,4 @@
-//! Guide to the renderer, chapter by chapter.
+//! Guide to the renderer, chapter by chapter: each module is a Markdown file of the repository.
 //!
 //! | chapter | question |
 //! |---|---|
@@ -13,7 +13,7 @@
 //! | [`tree`] | How does a ray find hair, and how does that compare with Embree and Mitsuba? |
 
 /// Targets of links in this documentation. They come before the paths that the Markdown files have for readers of the
-/// repository, and the first definition of a target counts.
+/// repository, because the first definition of a target counts.
 macro_rules! links {
     () => {
         "[energy]: https://docs.rs/hairis/latest/hairis/guide/energy/
@@ -28,7 +28,7 @@ macro_rules! links {
     };
 }
 
-/// Chapters as Markdown files: each module is one of them.
+/// Defines one module per chapter, whose documentation is a Markdown file.
 macro_rules! chapters {
     ($($chapter:ident)*) => { $(
         #[doc = links!()]

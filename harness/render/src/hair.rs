@@ -1,4 +1,4 @@
-//! Hair by name: model, sampler and preset.
+//! Hair chosen by the names of a model, a sampler and a preset.
 
 use crate::material::{Hair, Sampling};
 use crate::transport::{Integrator, Settings};
@@ -7,20 +7,20 @@ use hairis_instruments::error::Error;
 use hairis_materials::MaterialSpec;
 use hairis_variants::{ModelId, Values};
 
-/// The word for directions that are uniform over the sphere.
+/// Name of the sampler whose directions are uniform over the sphere.
 pub const UNIFORM: &str = "uniform";
-/// The word for the first sampler of a model, which for the published model is the published one.
+/// Name of the first sampler of a model, which for the published model is the published one.
 pub const PUBLISHED: &str = "published";
-/// The word for the samplers that are made for the bells of a model.
+/// Name of the samplers that are made for the bells of a model.
 pub const MATCHED: &str = "matched";
-/// A preset beside those of the models: the published model's `bright` with the narrow lobes of glossy hair.
+/// Name of a preset beside those of the models: the published model's `bright` with the narrow lobes of glossy hair.
 pub const GLOSSY: &str = "glossy";
 
-/// Largest mean albedo with which paths converge as they are, where single directions return more
+/// Largest mean albedo with which paths converge as they are, even if single directions return more
 /// than they receive.
 pub const MOST_MEAN_ALBEDO: f32 = 0.98;
 /// Largest albedo with which paths converge whatever the mean: hair that returns no more than it
-/// receives, and rounding.
+/// receives, apart from rounding.
 pub const MOST_ALBEDO: f32 = 1.001;
 
 /// Whether hair scatters what the model says.
@@ -34,16 +34,16 @@ pub enum Energy {
     PerWo,
 }
 
-/// Hair as a command line names it.
+/// Choice of hair by name: model, sampler, parameters and the name in reports.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// The entry of the registry.
+    /// Entry of the registry: a model with one of its samplers.
     pub id: ModelId,
-    /// How directions are drawn.
+    /// Method that draws directions.
     pub sampling: Sampling,
-    /// Its parameters.
+    /// Parameters of the model.
     pub values: Values,
-    /// Name in reports: that of the preset or of the file.
+    /// Name in reports, which is that of the preset or of the file.
     pub name: String,
 }
 
@@ -52,7 +52,7 @@ impl Choice {
     ///
     /// # Errors
     ///
-    /// A line that names the one that there is not, and what there is.
+    /// Returns a usage error that names the unknown model, sampler or preset and lists the valid ones.
     pub fn find(model: &str, sampler: &str, preset: &str) -> Result<Self, Error> {
         let (id, sampling) = find_sampler(model, sampler)?;
         let Some(values) = preset_of(id, preset) else {
@@ -71,12 +71,12 @@ impl Choice {
         })
     }
 
-    /// A material of a file, sampled as `sampler` says, or else as the file does, or else by
+    /// Chooses a material of a file. It is sampled as `sampler` says, or else as the file does, or else by
     /// [`default_sampler`].
     ///
     /// # Errors
     ///
-    /// If the model has no such sampler.
+    /// Returns an error if the model has no such sampler.
     pub fn of_material(
         name: &str,
         material: &MaterialSpec,
@@ -98,12 +98,12 @@ impl Choice {
         })
     }
 
-    /// Selects another sampler. For models without matched samplers, the published one
+    /// Selects another sampler by name. For models without matched samplers, the published one
     /// is the hair's own.
     ///
     /// # Errors
     ///
-    /// If the model has no such sampler.
+    /// Returns an error if the model has no such sampler.
     pub fn sampled(&self, sampler: &str) -> Result<Self, Error> {
         let (id, sampling) = match sampler {
             UNIFORM => (self.id, Sampling::Uniform),
@@ -117,17 +117,17 @@ impl Choice {
         })
     }
 
-    /// The word for its best sampler: see [`default_sampler`].
+    /// Returns the name of the best sampler of the hair: see [`default_sampler`].
     #[must_use]
     pub fn best(&self) -> &'static str {
         default_sampler(self.id.name())
     }
 
-    /// With other values for some parameters, each `NAME=VALUE`.
+    /// Sets other values for some parameters, each given as `NAME=VALUE`.
     ///
     /// # Errors
     ///
-    /// If there is no such parameter, or a value is not legal.
+    /// Returns an error if there is no such parameter, or if a value is not legal.
     pub fn set(self, assignments: &[String]) -> Result<Self, Error> {
         let refuse = |problem: String| Error::Usage(format!("--set {problem}"));
         let material = MaterialSpec::new(self.id, self.values)?
@@ -139,11 +139,11 @@ impl Choice {
         })
     }
 
-    /// The material.
+    /// Creates the material with these parameters, scaled to conserve energy as `energy` says.
     ///
     /// # Errors
     ///
-    /// If a value is out of its range.
+    /// Returns an error if a value is out of its range.
     pub fn hair(&self, energy: Energy) -> Result<Hair, Error> {
         let material = self.id.material(&self.values)?;
         let (material, factor) = match energy {
@@ -154,7 +154,7 @@ impl Choice {
         Ok(Hair::Model(material, self.sampling, factor))
     }
 
-    /// Everything that scattering depends on, in one line, but for the name.
+    /// Returns a line of everything that scattering depends on, without the name.
     #[must_use]
     pub fn describe(&self) -> String {
         let mut line = format!("model={} sampler={}", self.id.name(), self.sampler());
@@ -168,7 +168,7 @@ impl Choice {
         line
     }
 
-    /// Name of the sampler in reports.
+    /// Returns the name of the sampler as reports write it.
     #[must_use]
     pub fn sampler(&self) -> &'static str {
         match (self.sampling, self.id.choice()) {
@@ -203,7 +203,7 @@ fn find_sampler(model: &str, sampler: &str) -> Result<(ModelId, Sampling), Error
     }
 }
 
-/// The sampler of a model where none is asked for: the matched one, or its own.
+/// Returns the sampler of a model that is used if none is named: the matched one, or else the model's own.
 #[must_use]
 pub fn default_sampler(model: &str) -> &'static str {
     if samplers(model).contains(&MATCHED) {
@@ -213,29 +213,29 @@ pub fn default_sampler(model: &str) -> &'static str {
     }
 }
 
-/// Words for the samplers of a model.
+/// Returns the names of the samplers of a model.
 #[must_use]
 pub fn samplers(model: &str) -> Vec<&'static str> {
     let own = ModelId::ALL.iter().filter(|id| id.name() == model);
     let words = own.filter_map(|id| id.choice().map(|(_, word)| word));
-    // The first sampler of the published model has the word that stands for that of any model.
+    // The first sampler of the published model has the name that stands for the first sampler of any model.
     let others = words.filter(|word| *word != PUBLISHED);
     [UNIFORM, PUBLISHED].into_iter().chain(others).collect()
 }
 
-/// Whether paths that scatter several times in hair come to an end in the mean.
+/// Returns true if paths that scatter several times in hair come to an end in the mean.
 #[must_use]
 pub fn converges(hair: &Hair) -> bool {
     let [mean, worst] = hair.mean_and_worst_albedo();
     mean < MOST_MEAN_ALBEDO || worst <= MOST_ALBEDO
 }
 
-/// Refuses hair of which paths do not converge. `remedy` ends the line.
+/// Rejects hair in which paths do not converge. `remedy` ends the line of the error.
 ///
 /// # Errors
 ///
-/// If paths scatter several times in hair that returns more than it receives from single
-/// directions, and of a mean albedo of [`MOST_MEAN_ALBEDO`] or above.
+/// Returns a usage error if paths scatter several times in hair that returns more than it receives
+/// from single directions, and whose mean albedo is [`MOST_MEAN_ALBEDO`] or above.
 pub fn check_paths(
     hair: &Hair,
     settings: &Settings,
@@ -252,10 +252,10 @@ pub fn check_paths(
     Ok(())
 }
 
-/// The parameters of a preset.
+/// Returns the parameters of a preset.
 fn preset_of(id: ModelId, name: &str) -> Option<Values> {
     if name != GLOSSY {
-        // The first is the default of this program, whatever its name.
+        // The first preset is the default of this program, whatever its name.
         let mut presets = id.presets().enumerate();
         return presets
             .find(|(place, (preset, _))| *preset == name || (*place == 0 && name == "default"))

@@ -10,30 +10,30 @@ use hairis_instruments::light::{luminance, rounded};
 use hairis_instruments::machine;
 use std::ffi::OsStr;
 
-/// One channel of a layer, row by row from the upper left corner.
+/// Channel of a layer, row by row from the upper left corner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// Its name, after that of the layer and a dot where the layer has several.
+    /// Name of the channel, after that of the layer and a dot if the layer has several.
     pub name: &'static str,
-    /// A number per pixel.
+    /// One number per pixel.
     pub pixels: Vec<f32>,
 }
 
-/// Layers and attributes of a file.
+/// Layers and attributes that are written beside the pixels of a picture's file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Beside {
     /// Channels of the layers.
     pub channels: Vec<Channel>,
     /// Names and values of the attributes.
     pub attributes: Vec<(&'static str, String)>,
-    /// Place of the pixels in a larger picture: left column, upper row, and width and height of the whole. Without it they
-    /// are the whole.
+    /// Place of the pixels in a larger picture: left column and upper row, then width and height of the whole. Without a value, the
+    /// pixels are the whole.
     pub frame: Option<([u32; 2], [u32; 2])>,
 }
 
 impl Beside {
-    /// Layers of a film's sums: `variance`, that of a pixel's mean luminance, supposing independent samples; and `samples`, their
-    /// count. Further layers if [`look`] has been called. The attributes of a run.
+    /// Returns the layers of a film, and the attributes of a run. The layer `variance` is that of a pixel's mean luminance, under the
+    /// assumption of independent samples, and `samples` is their count. Further layers follow if [`look`] has been called.
     #[must_use]
     pub fn film(film: &Film, run: &str) -> Self {
         let crop = film.crop();
@@ -93,13 +93,13 @@ impl Beside {
     }
 }
 
-/// The command line of this process, as Bash reads it. Paths are as they were given.
+/// Returns the command line of this process, as Bash reads it. Paths are as they were given.
 fn command() -> String {
     let words: Vec<String> = std::env::args_os().map(|word| quoted(&word)).collect();
     words.join(" ")
 }
 
-/// A word in ASCII. Those with other bytes than letters, digits and a few signs are in `$'...'`: quotes and backslashes
+/// Quotes a word in ASCII. Words with other bytes than letters, digits and a few signs are in `$'...'`, where quotes and backslashes
 /// have a backslash before them, and bytes that are not printable ASCII are `\xNN`.
 fn quoted(word: &OsStr) -> String {
     let bytes = word.as_encoded_bytes();
@@ -111,10 +111,10 @@ fn quoted(word: &OsStr) -> String {
     }
 }
 
-/// Sees what the ray through each pixel's centre meets first, where that is not known yet, until
-/// `stop` says so: for the layers `albedo`, the directional albedo of hair and the albedo of
-/// surfaces; and `tangent`, the direction of the fibre from root to tip; and `Z`, the distance
-/// along the ray in cm. All are 0 elsewhere.
+/// Finds what the ray through each pixel's centre meets first, for tiles where that is not known yet,
+/// until `stop` ends the work. The layer `albedo` is the directional albedo of hair and the albedo of
+/// surfaces; `tangent` is the direction of the fibre from root to tip; and `Z` is the distance along
+/// the ray in cm. All are 0 elsewhere.
 pub fn look(scene: &Scene, film: &mut Film, stop: &Stop<'_>) {
     let unseen = film.tiles.iter_mut().filter(|tile| tile.first.is_empty());
     each_until(unseen.collect(), stop, |tile| {
@@ -126,7 +126,7 @@ pub fn look(scene: &Scene, film: &mut Film, stop: &Stop<'_>) {
     });
 }
 
-/// Albedo, tangent and distance of what the ray through a pixel's centre meets first.
+/// Returns albedo, tangent and distance of what the ray through a pixel's centre meets first.
 fn first(scene: &Scene, [x, y]: [u32; 2]) -> [f32; 7] {
     let ray = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
     let (albedo, tangent, distance) = match scene.closest(&ray) {

@@ -1,4 +1,4 @@
-//! Lights: rectangles in any frame, and light from infinitely far away.
+//! Lights: rectangles in any frame, and skies, whose light comes from infinitely far away.
 
 mod rectangle;
 mod table;
@@ -13,7 +13,7 @@ use hairis::simd::f32x8;
 use hairis_instruments::light::{self, Light, Seen8, rounded};
 use std::sync::Arc;
 
-/// Light from infinitely far away: any of the lights that models are compared under, or none.
+/// Light from infinitely far away: any of the lights under which models are compared, or none.
 ///
 /// ```
 /// use hairis_instruments::light::Constant;
@@ -29,14 +29,14 @@ impl<L: Light + 'static> From<L> for Sky {
     }
 }
 
-/// A direction towards a light.
+/// Direction towards a light that was drawn by one of its samplers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample {
     /// Unit direction.
     pub direction: Vec3,
     /// Distance to the light, infinite for a sky.
     pub distance: f32,
-    /// Radiance from there, linear RGB.
+    /// Radiance from the direction, linear RGB.
     pub radiance: Vec3,
     /// Density per steradian, above 0.
     pub pdf: f32,
@@ -45,18 +45,18 @@ pub struct LightSample {
 /// Eight directions towards lights, one per lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample8 {
-    /// Unit directions; any where the density is 0.
+    /// Unit directions, which are arbitrary where the density is 0.
     pub direction: Vec3x8,
-    /// Distance to the light, infinite for a sky.
+    /// Distances to the light, infinite for a sky.
     pub distance: f32x8,
-    /// Radiance from there, linear RGB.
+    /// Radiance from the directions, linear RGB.
     pub radiance: [f32x8; 3],
-    /// Density per steradian; 0 where there is no light.
+    /// Densities per steradian, 0 where there is no light.
     pub pdf: f32x8,
 }
 
 impl LightSample8 {
-    /// The sample of a lane, drawn with a share of the density.
+    /// Returns the sample of a lane, drawn with a share of the density, or `None` if the density is 0.
     #[inline]
     #[must_use]
     pub fn lane(&self, lane: usize, share: f32) -> Option<LightSample> {
@@ -96,33 +96,33 @@ impl From<[Option<LightSample>; 8]> for LightSample8 {
     }
 }
 
-/// A light met by a ray: its radiance, and the density of drawing that direction from the lights, per steradian.
+/// Light that a ray meets: its radiance, and the density with which the direction is drawn from the lights, per steradian.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     /// Radiance, linear RGB.
     pub radiance: Vec3,
-    /// Density per steradian.
+    /// Density of the direction, per steradian.
     pub pdf: f32,
 }
 
 impl Sky {
-    /// No light.
+    /// Sky without light, which draws no directions.
     pub const BLACK: Self = Self(None);
 
-    /// Whether it gives no light.
+    /// Returns true if the sky gives no light.
     #[must_use]
     pub const fn is_black(&self) -> bool {
         self.0.is_none()
     }
 
-    /// A direction drawn from two uniform numbers.
+    /// Draws a direction towards the sky from two uniform numbers, or returns `None` without light.
     #[must_use]
     pub fn sample(&self, xi: [f32; 2]) -> Option<LightSample> {
         let light = self.0.as_ref()?;
         towards(&light.sample(xi.map(f64::from)))
     }
 
-    /// Eight directions, as [`sample`](Self::sample) draws them.
+    /// Draws eight directions, as [`sample`](Self::sample) draws one, from the numbers of eight lanes.
     #[must_use]
     pub fn sample8(&self, xi: &[[f32; 8]; 2]) -> LightSample8 {
         let pairs = core::array::from_fn(|lane| [xi[0][lane], xi[1][lane]].map(f64::from));
@@ -130,7 +130,7 @@ impl Sky {
         LightSample8::from(self.0.as_ref().map_or([None; 8], draw))
     }
 
-    /// Radiance along a ray that meets nothing, and the density of its direction.
+    /// Returns the radiance along a ray that meets nothing, and the density of its direction.
     #[must_use]
     pub fn see(&self, direction: Vec3) -> Seen {
         let look = |light: &Arc<dyn Light>| light.see(direction.as_dvec3());
@@ -141,7 +141,7 @@ impl Sky {
         }
     }
 
-    /// Looks along eight rays.
+    /// Returns radiance and densities along eight rays that meet nothing, one per lane.
     #[must_use]
     pub fn see8(&self, directions: &Vec3x8) -> Seen8 {
         const DARK: Seen8 = Seen8 {
@@ -152,7 +152,7 @@ impl Sky {
     }
 }
 
-/// A direction of a light, in single precision; none where it cannot be drawn.
+/// Converts a direction of a light to single precision, or returns `None` if it has no density.
 fn towards(sample: &light::LightSample) -> Option<LightSample> {
     let pdf = rounded(sample.pdf);
     let radiance = Vec3::from_array(sample.radiance.map(rounded));
@@ -165,7 +165,7 @@ fn towards(sample: &light::LightSample) -> Option<LightSample> {
     })
 }
 
-/// A direction uniform on the sphere; the first number is along x.
+/// Returns a direction that is uniform on the sphere. The first number is along x.
 #[inline]
 #[must_use]
 pub fn uniform_direction([xi_x, xi_phi]: [f32; 2]) -> Vec3 {

@@ -1,6 +1,6 @@
-//! Linear equations.
+//! Solver for systems of linear equations.
 
-/// Solves linear equations by elimination with pivots; `None` if a pivot is 0 or not finite. The rows are used up.
+/// Solves linear equations by elimination with pivots, or returns `None` if a pivot is 0 or not finite. The rows are overwritten.
 pub(crate) fn solve<R: AsMut<[f64]> + Clone>(matrix: &mut [R], right: &[f64]) -> Option<Vec<f64>> {
     let count = right.len();
     let mut right = right.to_vec();

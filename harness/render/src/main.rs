@@ -1,4 +1,4 @@
-//! The command `hairis-render`; all else is in the library.
+//! Command `hairis-render`; everything else is in the library.
 
 use hairis_instruments::program;
 use hairis_render::args::Args;

@@ -1,4 +1,4 @@
-//! Material of hair: a model of the registry and how it is sampled.
+//! Material of hair: a model of the registry, and the way in which it is sampled.
 
 use crate::lights::uniform_direction;
 use core::f32::consts::{FRAC_PI_2, PI};
@@ -8,22 +8,22 @@ use hairis::{Eval8, Hit, Hit8, Sample8, Vec3x8};
 use hairis_instruments::direction::cosine;
 use hairis_variants::{AnyBsdf, AnyBsdf8, AnyMaterial};
 
-/// How directions are drawn at a hit.
+/// Method that draws directions at a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sampling {
-    /// By the model's own sampler.
+    /// Draws directions by the model's own sampler.
     Own,
-    /// Uniformly over the sphere.
+    /// Draws directions uniformly over the sphere.
     Uniform,
 }
 
-/// Hair: a material, and how directions are drawn.
+/// Hair of a scene: a material, and the method that draws directions.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one per scene")]
 pub enum Hair {
-    /// A model of the registry, and one factor on all that it scatters: 1, but for [`Energy::Scaled`](crate::hair::Energy::Scaled).
+    /// Model of the registry, and one factor on all that it scatters: 1, but for [`Energy::Scaled`](crate::hair::Energy::Scaled).
     Model(AnyMaterial, Sampling, f32),
-    /// Scatters equally into all directions and absorbs nothing: `S cos theta_i = 1 / (4 pi)`. For tests of transport.
+    /// Hair that scatters equally into all directions and absorbs nothing: `S cos theta_i = 1 / (4 pi)`. For tests of transport.
     Isotropic,
 }
 
@@ -37,12 +37,12 @@ enum Points {
     One(AnyBsdf),
 }
 
-/// Prepared hits.
+/// Hits prepared for evaluation and sampling of eight directions at a time.
 #[expect(missing_debug_implementations, reason = "short-lived")]
 pub struct Prepared(Option<(Points, Sampling, f32)>);
 
 impl Hair {
-    /// Eight hits, one a lane.
+    /// Prepares eight hits, one per lane, each for one direction at a time.
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: &Hit8) -> Prepared {
@@ -54,7 +54,7 @@ impl Hair {
         })
     }
 
-    /// One hit, for eight directions at a time.
+    /// Prepares one hit for the evaluation and sampling of eight directions at a time.
     #[inline]
     #[must_use]
     pub fn prepare(&self, hit: Hit) -> Prepared {
@@ -66,7 +66,7 @@ impl Hair {
         })
     }
 
-    /// Directional albedo at an inclination of `wo` in rad and an offset `h`.
+    /// Returns the directional albedo at an inclination of `wo` in rad and an offset `h`, by channel.
     #[must_use]
     pub fn albedo(&self, theta_o: f32, h: f32) -> [f32; 3] {
         let Self::Model(material, _, factor) = self else {
@@ -77,9 +77,9 @@ impl Hair {
         core::array::from_fn(|c| lobes.iter().map(|lobe| lobe[c]).sum::<f32>() * factor)
     }
 
-    /// Largest mean albedo of a channel, and largest of all.
+    /// Returns the largest mean albedo of a channel, and the largest albedo of all.
     ///
-    /// The mean is over hits as isotropic light makes them: of density `cos^2 theta_o` in inclination, uniform in `h`.
+    /// The mean is over hits as isotropic light makes them: of density `cos^2 theta_o` in inclination, and uniform in `h`.
     #[must_use]
     pub fn mean_and_worst_albedo(&self) -> [f32; 2] {
         const STEPS: u16 = 90;
@@ -107,7 +107,7 @@ impl Hair {
 }
 
 impl Prepared {
-    /// Value and density at a direction per lane, in the fibre's frame.
+    /// Returns the value of the BSDF and the density at a direction per lane, in the fibre's frame.
     #[inline]
     #[must_use]
     pub fn eval8(&self, wi: &Vec3x8) -> Eval8 {
@@ -133,7 +133,7 @@ impl Prepared {
         }
     }
 
-    /// A direction per lane, from three uniform numbers.
+    /// Draws a direction per lane, in the fibre's frame, from three uniform numbers.
     #[inline]
     #[must_use]
     pub fn sample8(&self, xi: &[[f32; 8]; 3]) -> Sample8 {

@@ -1,19 +1,19 @@
-//! Memory that a picture needs, and memory that is left.
+//! Memory that a picture needs, compared with the memory that is left.
 
 use hairis_instruments::error::Error;
 use std::fs;
 
-/// The most that a segment takes while the tree is built, of any kind of hair: strands, boxes and
-/// blocks. Triangles take less.
+/// Largest number of bytes that a segment takes while the tree is built, of any kind of hair: strands,
+/// boxes and blocks. Triangles take less.
 const PER_SEGMENT: u64 = 256;
-/// The most that a pixel takes while its picture is written: sums, layers and the file.
+/// Largest number of bytes that a pixel takes while its picture is written: sums, layers and the file.
 const PER_PIXEL: u64 = 176;
 
-/// Refuses a scene that does not fit in the memory that is left, where the system says how much that is.
+/// Rejects a scene that does not fit in the memory that is left, if the system states how much that is.
 ///
 /// # Errors
 ///
-/// [`Error::Usage`] with both sizes.
+/// Returns [`Error::Usage`] with the memory that the scene needs and the memory that is left.
 pub fn check(segments: u64, pixels: u64) -> Result<(), Error> {
     available().map_or(Ok(()), |available| {
         check_within(segments, pixels, available)
@@ -35,7 +35,7 @@ fn check_within(segments: u64, pixels: u64, available: u64) -> Result<(), Error>
     )))
 }
 
-/// Bytes that are left: of the machine, and of the control group that the process is in.
+/// Returns the bytes that are left to the machine, or to the control group of the process if that is less.
 fn available() -> Option<u64> {
     let number = |path: &str| fs::read_to_string(path).ok()?.trim().parse::<u64>().ok();
     let left = |most: &str, used: &str| Some(number(most)?.saturating_sub(number(used)?));
@@ -54,7 +54,7 @@ fn available() -> Option<u64> {
     .min()
 }
 
-/// The line `MemAvailable: N kB`.
+/// Parses the line `MemAvailable: N kB`.
 fn of_machine(meminfo: &str) -> Option<u64> {
     let line = meminfo
         .lines()

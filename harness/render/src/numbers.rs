@@ -1,4 +1,4 @@
-//! Uniform numbers for camera rays and paths: functions of seed, pixel, sample and place on the path alone.
+//! Uniform numbers for camera rays and paths, which are functions of seed, pixel, sample and place on the path alone.
 
 mod even;
 mod strata;
@@ -21,9 +21,9 @@ pub enum Sequence {
     Stratified,
 }
 
-/// Numbers of one path, four at a time.
+/// Uniform numbers of one path, drawn four at a time.
 ///
-/// Groups are independent of each other; samples of one group, pixel and seed are points of one sequence.
+/// Groups of four are independent of each other. The samples of one group, pixel and seed are points of one sequence.
 ///
 /// ```
 /// use hairis_render::numbers::{Numbers, Sequence};
@@ -38,11 +38,11 @@ pub struct Numbers {
     group: u32,
 }
 
-/// Points of a Sobol' sequence before it is scrambled anew: what the crate allows.
+/// Points of a Sobol' sequence before it is scrambled anew, as many as the crate allows.
 const SOBOL_POINTS: u32 = 1 << 16;
 
 impl Numbers {
-    /// The numbers of a sample of a pixel.
+    /// Creates the numbers of a sample of a pixel, from the first group on.
     #[inline]
     #[must_use]
     pub fn new(sequence: Sequence, seed: u64, pixel: u64, sample: u32) -> Self {
@@ -54,15 +54,15 @@ impl Numbers {
         }
     }
 
-    /// The sample.
+    /// Returns the index of the sample within its pixel.
     #[inline]
     #[must_use]
     pub fn sample(&self) -> u32 {
         self.sample
     }
 
-    /// The numbers of a further part of a path, where it is split. Part 1 and up: the path itself
-    /// keeps its numbers.
+    /// Returns the numbers of a further part of a path, where the path is split. Parts count from 1,
+    /// because the path itself keeps its numbers.
     #[inline]
     #[must_use]
     pub fn part(&self, part: u32) -> Self {
@@ -70,7 +70,7 @@ impl Numbers {
         Self { key, ..*self }
     }
 
-    /// The next four numbers, each in `[0, 1 - 2^-24]`.
+    /// Returns the next four numbers of the path, each in `[0, 1 - 2^-24]`.
     #[inline]
     pub fn four(&mut self) -> [f32; 4] {
         let group = self.group;
@@ -118,13 +118,13 @@ impl Numbers {
     }
 }
 
-/// The lower 32 bits.
+/// Returns the lower 32 bits.
 #[inline]
 fn half(bits: u64) -> u32 {
     (bits & 0xffff_ffff) as u32
 }
 
-/// The upper 24 bits as a number in `[0, 1)`.
+/// Converts the upper 24 bits to a number in `[0, 1)`.
 #[inline]
 fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / 16_777_216.0)

@@ -1,8 +1,8 @@
-//! Unfinished pictures as files: what a run that was stopped goes on from, and what shards leave for `merge`.
+//! Unfinished pictures as files, from which stopped runs continue and which shards leave for `merge`.
 //!
-//! A file has a header and then tiles, each with a digest of its own. A [`Log`] appends tiles as
-//! they are rendered, and the last of a place counts. A process that is killed leaves at most its
-//! last tile torn, which is left out.
+//! A file has a header, followed by tiles, each with a digest of its own. A [`Log`] appends tiles as
+//! they are rendered, and the last record of a tile counts. A process that is killed leaves at most its
+//! last tile torn, which readers leave out.
 
 mod log;
 mod read;
@@ -24,43 +24,43 @@ use std::fs::{self, File};
 use std::io::{self, BufRead as _, BufReader, Read as _};
 use std::path::{Path, PathBuf};
 
-/// First line of a file, but for the number of the format.
+/// Beginning of the first line of a file, without the number of the format.
 const FORMAT: &str = "hairis-render part ";
-/// First line of a file.
+/// First line of a file, with the number of the format.
 const MAGIC: &str = "hairis-render part 4";
 
-/// Sums of tiles, and of which run they are.
+/// Part of a picture: the sums of tiles, and the run to which they belong.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// Everything that the sums depend on, in one line: parts of equal runs may be joined, and no others.
+    /// Line of everything that the sums depend on. Only parts of equal runs may be joined.
     pub run: String,
-    /// The sums.
+    /// Film with the sums of the tiles.
     pub film: Film,
-    /// Whether the picture has been written: a run with other settings may begin anew, then.
+    /// Whether the picture has been written, so that a run with other settings may begin anew.
     pub finished: bool,
 }
 
-/// Path of the part of an unfinished picture.
+/// Returns the path of the part of an unfinished picture, with the ending `part`.
 #[must_use]
 pub fn path(picture: &Path) -> PathBuf {
     picture.with_extension("part")
 }
 
 impl Part {
-    /// Writes the file as a whole.
+    /// Writes the file as a whole: the header, and a record of every tile that is begun.
     ///
     /// # Errors
     ///
-    /// If it cannot be written.
+    /// Returns an error if the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
         whole(path, |out| self.write_to(out))
     }
 
-    /// The bytes of the file.
+    /// Encodes the part as the bytes of its file.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
-        // Memory takes all of it.
+        // Ignore errors, because writing into memory does not fail.
         let _ = self.write_to(&mut bytes);
         bytes
     }
@@ -71,7 +71,7 @@ impl Part {
         begun.try_for_each(|tile| out.write_all(&record(tile)))
     }
 
-    /// The file but for its tiles.
+    /// Returns the bytes of the file before its tiles.
     fn header(&self) -> Vec<u8> {
         let Crop {
             x,
@@ -96,16 +96,16 @@ impl Part {
         bytes
     }
 
-    /// Reads a file. What is not whole at its end is left out, with a remark.
+    /// Reads a file. Bytes at the end that are no whole record are left out, with a remark.
     ///
     /// # Errors
     ///
-    /// If it cannot be read, or is no such file.
+    /// Returns an error if the file cannot be read, or is not a part of a picture.
     pub fn read(path: &Path) -> Result<Self, Error> {
         Self::read_whole(path).map(|(part, _)| part)
     }
 
-    /// Reads a file, and says how many of its bytes are whole.
+    /// Reads a file, and returns how many of its bytes are whole.
     fn read_whole(path: &Path) -> Result<(Self, usize), Error> {
         let refuse = |problem: String| Error::Part {
             path: path.to_owned(),
@@ -131,26 +131,27 @@ impl Part {
         Ok((part, whole))
     }
 
-    /// Reads the bytes of a file; `None` if they are damaged, or not those of a part. What is not
-    /// whole at their end is left out.
+    /// Reads a part from the bytes of a file. Returns `None` if they are damaged, or not those of a part.
+    /// Bytes at the end that are no whole record are left out.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         parse(bytes, is_sealed).ok().map(|(part, _)| part)
     }
 
-    /// Reads a part without checking digests, for tests of the reader.
+    /// Reads a part without a check of the digests, for tests of the reader.
     #[must_use]
     pub fn from_bytes_unchecked(bytes: &[u8]) -> Option<Self> {
         parse(bytes, |_, _| true).ok().map(|(part, _)| part)
     }
 
-    /// Goes on from a file, if there is one and it belongs to the same run and tiles as `fresh`; otherwise `fresh`. A finished
+    /// Continues from a file, if there is one and it belongs to the same run and tiles as `fresh`; otherwise returns `fresh`. A finished
     /// picture that the run cannot continue is no obstacle: the run begins anew, as a remark says.
     ///
     /// # Errors
     ///
-    /// As [`read`](Self::read), and if the file belongs to an unfinished picture of another run, of
-    /// another shard, or with more than `samples` samples, or another process is writing to it.
+    /// Returns the errors of [`read`](Self::read). Also returns an error if the file belongs to an
+    /// unfinished picture of another run, of another shard, or with more than `samples` samples, or if
+    /// another process is writing to the file.
     pub fn resume(
         path: &Path,
         mut fresh: Self,
@@ -196,11 +197,11 @@ impl Part {
         })
     }
 
-    /// Joins parts of one run into a whole picture. A tile that is in several is taken from the first.
+    /// Joins parts of one run into a whole picture. A tile that is in several parts is taken from the first.
     ///
     /// # Errors
     ///
-    /// If parts belong to different runs, or tiles are missing.
+    /// Returns an error if parts belong to different runs, have different counts of samples, or lack tiles.
     pub fn merge(parts: Vec<(PathBuf, Self)>) -> Result<Self, Error> {
         // A small picture may have shards without a tile, whose count of samples says nothing.
         let is_counted = |part: &Self| !part.film.tiles.is_empty();
@@ -261,10 +262,10 @@ impl Part {
     }
 }
 
-/// Identity of the build that sums of a picture depend on: the build, and whether the CPU fuses multiply and add.
+/// Returns the identity of the build that the sums depend on: the build, and whether the CPU fuses multiply and add.
 pub(crate) fn build() -> String {
     let machine = machine!();
-    // A commit does not tell builds with changes apart: their program does.
+    // A commit does not distinguish builds with changes, but a digest of the program does.
     let changes = if machine.dirty == Some(false) {
         String::new()
     } else {
@@ -278,7 +279,7 @@ pub(crate) fn build() -> String {
     )
 }
 
-/// The first word in which two runs differ.
+/// Returns the first word in which two runs differ.
 fn difference(found: &str, expected: &str) -> Option<String> {
     let mut pairs = found.split_whitespace().zip(expected.split_whitespace());
     let (found, expected) = pairs.find(|(a, b)| a != b)?;
@@ -288,7 +289,7 @@ fn difference(found: &str, expected: &str) -> Option<String> {
 /// Describes the fault of a file without a whole header.
 fn problem(path: &Path) -> String {
     let mut first = String::new();
-    // What is no text is no part of any format.
+    // A file that is not text is no part of any format.
     let read = File::open(path).map(|file| BufReader::new(file.take(80)).read_line(&mut first));
     let got = first.trim_end();
     if read.is_ok() && got.starts_with(FORMAT) && got != MAGIC {
@@ -298,7 +299,7 @@ fn problem(path: &Path) -> String {
     }
 }
 
-/// A tile in the file.
+/// Encodes a tile as a record of the file.
 fn record(tile: &Tile) -> Vec<u8> {
     let Tile {
         place,
@@ -342,7 +343,7 @@ fn record(tile: &Tile) -> Vec<u8> {
     bytes
 }
 
-/// Whether a digest is that of the bytes before it.
+/// Returns true if `check` is the digest of the bytes before it.
 fn is_sealed(bytes: &[u8], check: u64) -> bool {
     digest(bytes) == check
 }

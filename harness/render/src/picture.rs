@@ -1,4 +1,4 @@
-//! Pictures as files: `OpenEXR` for measuring, PNG for looking.
+//! Pictures as files: `OpenEXR` for measurements, and PNG for previews.
 
 use crate::film::Picture;
 use crate::layers::Beside;
@@ -19,7 +19,7 @@ const MOST: f64 = 0.95;
 /// Display luminance, of 1, of the pixel at that share.
 const BRIGHT: f64 = 0.7;
 
-/// The factor on radiance that makes a preview neither dark nor white.
+/// Returns the factor on radiance that makes a preview neither dark nor white.
 #[must_use]
 pub fn exposure(picture: &Picture) -> f64 {
     let mut luminances: Vec<f64> = picture
@@ -35,14 +35,14 @@ pub fn exposure(picture: &Picture) -> f64 {
     }
 }
 
-/// The picture as a screen shows it, sRGB: linear in the shadows, and lights rolled off towards white.
+/// Converts a picture, with radiance times `exposure`, to sRGB: linear in the shadows, with lights rolled off towards white.
 #[must_use]
 pub fn preview(picture: &Picture, exposure: f64) -> RgbImage {
     RgbImage::from_fn(picture.size[0], picture.size[1], |x, y| {
         let rgb = picture
             .at(x, y)
             .map(|channel| (channel * exposure).max(0.0));
-        // Beyond 0.6 the curve bends, and reaches 1 at 4.
+        // Beyond 0.6 the curve bends, and it is close to 1 at 4.
         let l = luminance(rgb).max(1e-12);
         let rolled = if l < 0.6 {
             l
@@ -53,7 +53,7 @@ pub fn preview(picture: &Picture, exposure: f64) -> RgbImage {
     })
 }
 
-/// A linear value in `[0, 1]` as the byte that a screen shows.
+/// Encodes a linear value in `[0, 1]` as the sRGB byte that a screen shows.
 #[must_use]
 pub fn srgb(linear: f64) -> u8 {
     let encoded = if linear <= 0.003_130_8 {
@@ -70,11 +70,11 @@ pub fn srgb(linear: f64) -> u8 {
     byte
 }
 
-/// A PNG file in memory.
+/// Encodes an image as a PNG file in memory.
 ///
 /// # Errors
 ///
-/// Never, but that the encoder says so.
+/// Returns an error only if the encoder reports one.
 pub fn png(image: &RgbImage) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     image::codecs::png::PngEncoder::new(&mut bytes)
@@ -88,18 +88,18 @@ pub fn png(image: &RgbImage) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes a picture as `OpenEXR`, single precision, with layers and attributes, and beside it a PNG preview, each as a whole.
+/// Writes a picture as `OpenEXR` in single precision, with layers and attributes, and beside it a PNG preview, each as a whole.
 ///
 /// # Errors
 ///
-/// If a file cannot be written.
+/// Returns an error if a file cannot be written.
 pub fn write(picture: &Picture, beside: &Beside, path: &Path, exposure: f64) -> Result<(), Error> {
     let encoded = exr(picture, beside).map_err(io::Error::other);
     whole(path, |out| encoded.and_then(|bytes| out.write_all(&bytes)))?;
     write_preview(picture, &path.with_extension("png"), exposure)
 }
 
-/// An `OpenEXR` file in memory.
+/// Encodes a picture as an `OpenEXR` file in memory.
 fn exr(picture: &Picture, beside: &Beside) -> exr::error::Result<Vec<u8>> {
     let channel = |name: &str, pixels| AnyChannel::new(name, FlatSamples::F32(pixels));
     #[expect(
@@ -140,7 +140,7 @@ fn exr(picture: &Picture, beside: &Beside) -> exr::error::Result<Vec<u8>> {
     Ok(bytes.into_inner())
 }
 
-/// The text of an attribute, in ASCII: other bytes of the value become `\xNN`.
+/// Converts the value of an attribute to ASCII text, in which other bytes become `\xNN`.
 fn text(value: &str) -> Text {
     let mut ascii = String::new();
     for byte in value.bytes() {
@@ -153,11 +153,11 @@ fn text(value: &str) -> Text {
     Text::from_slice_unchecked(ascii.as_bytes())
 }
 
-/// Writes a PNG preview as a whole.
+/// Writes a PNG preview of a picture as a whole file.
 ///
 /// # Errors
 ///
-/// If the file cannot be written.
+/// Returns an error if the file cannot be written.
 pub fn write_preview(picture: &Picture, path: &Path, exposure: f64) -> Result<(), Error> {
     whole(path, |out| {
         out.write_all(&png(&preview(picture, exposure))?)

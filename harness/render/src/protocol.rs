@@ -1,4 +1,4 @@
-//! Comparison of samplers: references, errors, and errors of errors.
+//! Comparison of samplers: references, errors, and standard errors of errors.
 
 mod rate;
 mod runs;
@@ -8,12 +8,12 @@ pub use runs::Runs;
 
 use crate::film::Picture;
 
-/// Share of the pixels, those of the largest errors, that trimmed errors leave out.
+/// Share of the pixels that trimmed errors leave out, which are the pixels of the largest errors.
 pub const TRIMMED: f64 = 0.001;
-/// Relative errors are relative to the luminance, but at least to this share of the mean: black pixels count little.
+/// Share of the mean luminance whose square is added to that of a pixel in relative errors, so that black pixels count little.
 const FLOOR: f64 = 0.1;
 
-/// An error of a picture: a mean over its pixels of the squared error in luminance.
+/// Measure of the error of a picture: a mean over its pixels of the squared error in luminance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// Mean square error.
@@ -27,7 +27,7 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// All, in their order.
+    /// All measures, in the order in which [`Errors`] holds them.
     pub const ALL: [Self; 4] = [
         Self::Mse,
         Self::TrimmedMse,
@@ -35,7 +35,7 @@ impl Measure {
         Self::TrimmedRelMse,
     ];
 
-    /// Its name in reports.
+    /// Returns the name of the measure as reports write it.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -50,43 +50,43 @@ impl Measure {
 /// Errors of a picture, in the order of [`Measure::ALL`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
-    /// The errors; what noise of the reference adds is subtracted.
+    /// Errors, from which the part that is due to noise of the reference is subtracted.
     pub values: [f64; 4],
-    /// Noise of the reference, which was subtracted.
+    /// Parts of the errors that were due to noise of the reference, and were subtracted.
     pub own: [f64; 4],
 }
 
 impl Errors {
-    /// An error.
+    /// Returns one of the errors, with noise of the reference subtracted.
     #[must_use]
     pub fn value(&self, measure: Measure) -> f64 {
         self.values[measure as usize]
     }
 
-    /// The part of an error that was due to noise of the reference.
+    /// Returns the part of an error that was due to noise of the reference.
     #[must_use]
     pub fn own(&self, measure: Measure) -> f64 {
         self.own[measure as usize]
     }
 }
 
-/// A picture that others are compared with, and how noisy it is.
+/// Picture with which others are compared, and an estimate of its noise.
 #[derive(Clone, Debug)]
 pub struct Reference {
     /// Mean of two pictures that share no numbers.
     pub picture: Picture,
-    /// Time of both, in seconds of a thread, if it is known; 0 else.
+    /// Time of both pictures, in seconds of a thread, or 0 if the time is not known.
     pub seconds: f64,
-    /// Luminances.
+    /// Luminance of each pixel.
     luminances: Vec<f64>,
-    /// Variance of each luminance, from how much the two pictures differ.
+    /// Variance of each luminance, from the difference of the two pictures.
     variances: Vec<f64>,
-    /// Mean luminance.
+    /// Mean luminance of the picture.
     mean: f64,
 }
 
 impl Reference {
-    /// Compares two pictures that share no numbers.
+    /// Creates a reference from two pictures that share no numbers: their mean, and its noise from their difference.
     #[must_use]
     pub fn new(a: &Picture, b: &Picture) -> Self {
         let mut picture = a.clone();
@@ -116,12 +116,12 @@ impl Reference {
         Self { seconds, ..self }
     }
 
-    /// Divisor that makes squared errors of a pixel relative.
+    /// Returns the divisor that makes squared errors of a pixel relative.
     fn unit(&self, pixel: usize) -> f64 {
         self.luminances[pixel].powi(2) + (FLOOR * self.mean).powi(2)
     }
 
-    /// Signed error in luminance of every pixel of a picture.
+    /// Returns the signed error in luminance of every pixel of a picture.
     #[must_use]
     pub fn signed(&self, picture: &Picture) -> Vec<f64> {
         picture
@@ -132,7 +132,7 @@ impl Reference {
             .collect()
     }
 
-    /// Signed errors in luminance, one per pixel, as relative errors.
+    /// Converts signed errors in luminance, one per pixel, to relative errors.
     #[must_use]
     pub fn relative(&self, errors: &[f64]) -> Vec<f64> {
         errors
@@ -142,7 +142,7 @@ impl Reference {
             .collect()
     }
 
-    /// Squared errors in luminance, one per pixel, as squared relative errors.
+    /// Converts squared errors in luminance, one per pixel, to squared relative errors.
     #[must_use]
     pub fn relative_squares(&self, squares: &[f64]) -> Vec<f64> {
         squares
@@ -152,8 +152,8 @@ impl Reference {
             .collect()
     }
 
-    /// How another scene looks beside this one: the ratio of the mean luminances, and the root of the mean squared relative
-    /// difference. The noise of both is subtracted.
+    /// Compares the look of another scene with this one: the ratio of the mean luminances, and the root of the mean squared
+    /// relative difference, from which the noise of both is subtracted.
     #[must_use]
     pub fn difference(&self, other: &Self) -> (f64, f64) {
         let square = |k: usize| {
@@ -168,7 +168,7 @@ impl Reference {
         (other.mean / self.mean, mean.max(0.0).sqrt())
     }
 
-    /// Errors of a picture; what the reference's own noise adds is subtracted.
+    /// Returns the errors of a picture, from which the part that is due to noise of the reference is subtracted.
     #[must_use]
     pub fn errors(&self, picture: &Picture) -> Errors {
         let signed = self.signed(picture);

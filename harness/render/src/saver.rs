@@ -1,5 +1,5 @@
-//! Work on a picture in slices of time: saved between them, so that a run that is killed loses a
-//! few seconds.
+//! Work on a picture in slices of time, with saves between the slices, so that a run that is killed
+//! loses only a few seconds.
 
 use crate::film::Film;
 use crate::part::{Log, Part};
@@ -13,10 +13,10 @@ use std::time::Instant;
 
 /// Time after which no further tile of a slice is begun.
 const SLICE: Duration = Duration::from_millis(1500);
-/// Bounds of the time between two saves, which is half of the time since the start.
+/// Shortest and longest time between two saves, which otherwise is half of the time since the start.
 const SAVE: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(4)];
 
-/// Saves a picture that grows, and ends the run if a signal asks for it.
+/// Saver of a picture that grows, which ends the run if a signal asks for it.
 #[derive(Debug)]
 pub(crate) struct Saver<'a> {
     log: Log,
@@ -38,28 +38,28 @@ impl<'a> Saver<'a> {
         }
     }
 
-    /// The file of the part.
+    /// Returns the path of the part's file.
     pub(crate) fn path(&self) -> &Path {
         self.log.path()
     }
 
-    /// The file of a part that has all that there will be.
+    /// Returns the log of a part to which nothing more will be added.
     pub(crate) fn end(self) -> Log {
         self.log
     }
 
-    /// Saves what there is.
+    /// Saves the current state of the part.
     pub(crate) fn save(&mut self, part: &Part) -> Result<(), Error> {
         self.log.save(part)?;
         self.saved = Instant::now();
         Ok(())
     }
 
-    /// Works on a film until `slice`, which is to stop when it is told to, says that all is done.
+    /// Works on a film slice by slice, until `slice` returns true. `slice` must stop when its second argument returns true.
     ///
     /// # Errors
     ///
-    /// If what there is cannot be saved, and [`Error::Interrupted`], with everything saved.
+    /// Returns an error if the part cannot be saved, and [`Error::Interrupted`], with everything saved, after a signal.
     pub(crate) fn work(
         &mut self,
         part: &mut Part,
@@ -91,7 +91,7 @@ impl<'a> Saver<'a> {
     ///
     /// # Errors
     ///
-    /// As [`work`](Self::work).
+    /// Returns the errors of [`work`](Self::work).
     pub(crate) fn render(
         &mut self,
         part: &mut Part,
@@ -132,7 +132,7 @@ mod tests {
         scenes::build(Name::Env, parts).expect("a scene")
     }
 
-    /// Tiles but for their times.
+    /// Returns tiles without their times.
     fn sums(film: &Film) -> Vec<Tile> {
         let timeless = |tile: &Tile| Tile {
             seconds: 0.0,
@@ -141,7 +141,7 @@ mod tests {
         film.tiles.iter().map(timeless).collect()
     }
 
-    /// Runs that a signal ends within each pass come to the bits of one run.
+    /// Checks that runs that a signal ends within each pass come to the bits of one run.
     #[test]
     fn signals_within_passes_do_not_show() {
         let scene = scene();

@@ -1,4 +1,4 @@
-//! The ellipsoid that roots of hair lie on.
+//! Ellipsoid of skin that is fitted to the roots of hair.
 
 use crate::geometry::{HEAD, Strands};
 use crate::linear::solve;
@@ -13,52 +13,52 @@ pub enum Scalp {
     Auto,
 }
 
-/// Fewer roots make no surface.
+/// Least number of roots that make a surface.
 const FEWEST: usize = 10;
-/// At most this many roots are looked at, evenly spread.
+/// Largest number of roots that are used, evenly spread.
 const MOST: usize = 20_000;
-/// Roots farther from their median than this many times the median distance are not on the scalp.
+/// Multiple of the median distance from their median, beyond which roots are not on the scalp.
 const STRAY: f64 = 3.0;
 /// Weight of the proportions of a head against the mean squared distance of the roots, in units of
-/// their spread: it decides where roots cover too little of a head to show its shape, and moves the
-/// axes of a covered one by less than a hundredth.
+/// their spread. It decides where roots cover too little of a head to show its shape, and moves the
+/// axes of a covered head by less than a hundredth.
 const PRIOR: f64 = 1e-3;
-/// Logarithm of the largest factor between the proportions of a scalp and those of a head. Strips of
-/// roots, as of a mohawk, fit long and narrow ellipsoids better than any head ...
+/// Logarithm of the largest factor between the proportions of a scalp and those of a head. A limit is
+/// needed because strips of roots, as of a mohawk, fit long and narrow ellipsoids better than any head.
 const DISPROPORTION: f64 = 0.3;
-/// ... which weigh this much beyond the limit.
+/// Weight of proportions beyond that limit.
 const BARRIER: f64 = 10.0;
-/// Distances in units of the spread count in full up to this, and farther ones less and less: some
-/// roots are not on the scalp. One after the other, as the fit comes nearer.
+/// Distances in units of the spread up to which roots count in full. Farther roots count less and less,
+/// because some are not on the scalp. Each is used in turn, as the fit comes nearer.
 const OUTLIERS: [f64; 2] = [1.0, 0.2];
-/// Rounds of least squares; differences end sooner.
+/// Largest number of rounds of least squares, which end sooner once gains are negligible.
 const ROUNDS: usize = 200;
-/// This part of the roots may lie below the surface ...
+/// Share of the roots that may lie below the surface ...
 const BELOW: f64 = 0.02;
 /// ... which is this much smaller than the ellipsoid through them, so that strands begin above it.
 const CLEARANCE: f64 = 0.995;
-/// Surfaces that are farther from roots than this part of their radius are no scalp ...
+/// Largest median distance of roots from the surface of a scalp, relative to its radius.
 const WORST: f64 = 0.15;
-/// ... nor are those whose half axes exceed this many times the spread of the roots, which is about 1.3
-/// times for a covered head: the roots are on a plane, or go down a back.
+/// Largest half axis of a scalp in units of the spread of the roots, which is about 1.3 for a covered head.
+/// It is larger if the roots are on a plane, or go down a back.
 const FLATTEST: f64 = 2.5;
 
-/// A fitted ellipsoid.
+/// Ellipsoid that was fitted to the roots of hair, with its distance from them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
-    /// The ellipsoid, a little below the roots.
+    /// Ellipsoid of skin, a little below the roots.
     pub ellipsoid: Ellipsoid,
-    /// Median distance of the roots from the one through them, in centimetres.
+    /// Median distance of the roots from the ellipsoid through them, in centimetres.
     pub distance: f32,
-    /// Number of roots.
+    /// Number of roots that were fitted.
     pub roots: usize,
 }
 
-/// Fits an ellipsoid along the axes to the roots.
+/// Fits an ellipsoid along the axes to the roots of strands.
 ///
 /// # Errors
 ///
-/// A line, if there are too few roots, or they do not lie on an ellipsoid.
+/// Returns a line of text if there are too few roots, or if they do not lie on an ellipsoid.
 pub fn fit(strands: &Strands) -> Result<Fit, String> {
     let root = |strand| strands.node_position(strands.nodes_of(strand).start);
     let mut roots: Vec<DVec3> = (0..)
@@ -91,9 +91,9 @@ pub fn fit(strands: &Strands) -> Result<Fit, String> {
     if size.is_nan() || size < 1e-6 {
         return refused("got all at one place");
     }
-    // In units of the spread of the roots.
+    // Measure in units of the spread of the roots.
     let places: Vec<DVec3> = roots.iter().map(|root| (*root - mean) / size).collect();
-    // Roots lie on the upper side: begin below them.
+    // Roots lie on the upper side, so begin below them.
     let proportions = HEAD.as_dvec3() / HEAD.as_dvec3().element_product().cbrt();
     let start = Surface {
         centre: DVec3::new(0.0, -0.5, 0.0),
@@ -133,7 +133,7 @@ pub fn fit(strands: &Strands) -> Result<Fit, String> {
     })
 }
 
-/// The number that a share of sorted ones are below.
+/// Returns the number below which a share of sorted numbers lies.
 fn part(sorted: &[f64], share: f64) -> f64 {
     #[expect(
         clippy::cast_possible_truncation,
@@ -144,7 +144,7 @@ fn part(sorted: &[f64], share: f64) -> f64 {
     sorted[place]
 }
 
-/// The median along each axis.
+/// Returns the median along each axis.
 fn median(places: &[DVec3]) -> DVec3 {
     let along = |axis: usize| {
         let mut all: Vec<f64> = places.iter().map(|place| place[axis]).collect();
@@ -171,7 +171,7 @@ impl core::fmt::Display for Fit {
     }
 }
 
-/// An ellipsoid by its centre and the logarithms of its half axes.
+/// Ellipsoid, by its centre and the logarithms of its half axes.
 #[derive(Clone, Copy)]
 struct Surface {
     centre: DVec3,
@@ -183,22 +183,22 @@ impl Surface {
         self.logs.map(f64::exp)
     }
 
-    /// Distance from the centre in radii: 1 on the surface.
+    /// Returns the distance from the centre in radii, which is 1 on the surface.
     fn depth(&self, place: DVec3) -> f64 {
         ((place - self.centre) / self.radii()).length()
     }
 
-    /// Distance from the surface, about. In radii it would be least for the largest ellipsoid.
+    /// Returns the approximate distance from the surface. In radii, the distance would be least for the largest ellipsoid.
     fn off(&self, place: DVec3) -> f64 {
         (self.depth(place) - 1.0) * self.size()
     }
 
-    /// Geometric mean of the half axes.
+    /// Returns the geometric mean of the half axes.
     fn size(&self) -> f64 {
         (self.logs.element_sum() / 3.0).exp()
     }
 
-    /// Cost that the fit minimises.
+    /// Returns the cost that the fit minimises.
     fn cost(&self, places: &[DVec3], proportions: DVec3, outlier: f64) -> f64 {
         let of = |place: &DVec3| {
             let off = self.off(*place) / outlier;
@@ -209,13 +209,13 @@ impl Surface {
             + BARRIER * excess(self.disproportion(proportions)).length_squared()
     }
 
-    /// Differences of the logarithms from those of a head of any size.
+    /// Returns the differences of the logarithms from those of a head of any size.
     fn disproportion(&self, proportions: DVec3) -> DVec3 {
         let off = self.logs - proportions.map(f64::ln);
         off - off.element_sum() / 3.0
     }
 
-    /// Levenberg and Marquardt's method.
+    /// Minimises the cost by Levenberg and Marquardt's method, or returns `None` if there is no finite solution.
     fn improve(mut self, places: &[DVec3], proportions: DVec3, outlier: f64) -> Option<Self> {
         let mut damping = 1e-2;
         let mut cost = self.cost(places, proportions, outlier);
@@ -249,7 +249,7 @@ impl Surface {
         (self.centre.is_finite() && self.logs.is_finite()).then_some(self)
     }
 
-    /// Matrix and right side of the linear problem.
+    /// Returns the matrix and the right side of the linear problem.
     fn normal_equations(
         &self,
         places: &[DVec3],
@@ -295,7 +295,7 @@ impl Surface {
     }
 }
 
-/// Parts of differences of logarithms beyond the limit.
+/// Returns the parts of differences of logarithms beyond the limit.
 fn excess(off: DVec3) -> DVec3 {
     off - off.clamp(DVec3::splat(-DISPROPORTION), DVec3::splat(DISPROPORTION))
 }

@@ -1,4 +1,4 @@
-//! Scene: hair, a head, walls and lights, and a camera.
+//! Scene of a picture: hair, a head, walls and lights, and a camera.
 
 mod head;
 
@@ -14,36 +14,36 @@ use hairis::Vec3x8;
 use hairis::simd::f32x8;
 use hairis_instruments::light::Seen8;
 
-/// Rays to lights end this much before them.
+/// Share of the distance to a light after which rays towards it end.
 const SHORTER: f32 = 1.0 - 1e-4;
 
-/// First object along a ray.
+/// First object along a ray: a fibre, a surface, a light, or the sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Met {
-    /// Nothing: the sky.
+    /// Nothing, so that the ray reaches the sky.
     Nothing,
-    /// A fibre.
+    /// Fibre, with the place of the hit.
     Hair(tree::Hit),
-    /// A surface that reflects, at this point, seen from the side of this normal, with this albedo.
+    /// Surface that reflects: the point, the normal on the side of the ray, and the albedo.
     Surface(Vec3, Vec3, Vec3),
-    /// A light: its place among the rectangles, and the distance.
+    /// Light, as its index among the rectangles.
     Light(usize),
 }
 
-/// A scene. Made by [`scenes`](crate::scenes), or by hand.
+/// Scene in which rays are traced, made by [`scenes`](crate::scenes) or by hand.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The fibres.
+    /// Fibres of the hair.
     pub strands: Strands,
     /// Tree over the strands.
     pub tree: Tree,
-    /// Their material.
+    /// Material of the hair.
     pub hair: Hair,
-    /// The head that they grow on.
+    /// Head on which the hair grows.
     pub head: Option<Head>,
     /// Walls and lights.
     pub rectangles: Vec<Rectangle>,
-    /// How directions towards rectangles that emit are drawn.
+    /// Method that draws directions towards rectangles that emit.
     pub rectangle_sampling: RectangleSampling,
     /// Light from infinitely far away.
     pub sky: Sky,
@@ -51,12 +51,12 @@ pub struct Scene {
     pub backdrop: Option<Vec3>,
     /// Camera of the picture.
     pub camera: Camera,
-    /// Rays that leave a surface start this far above it, in centimetres.
+    /// Distance above a surface at which rays that leave it start, in centimetres.
     pub gap: f32,
 }
 
 impl Scene {
-    /// Finds the first object along a ray.
+    /// Finds the first object along a ray, among hair, head and rectangles.
     #[inline]
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Met {
@@ -91,7 +91,7 @@ impl Scene {
         self.tree.closest(&ray).map_or(met, Met::Hair)
     }
 
-    /// The start of rays that leave the hair that a ray has hit.
+    /// Returns the start of rays that leave the hair that a ray has hit.
     #[inline]
     pub(crate) fn origin(&self, ray: &Ray, hit: &tree::Hit) -> Vec3 {
         match self.tree.meet() {
@@ -100,7 +100,7 @@ impl Scene {
         }
     }
 
-    /// Whether a ray to a light is blocked.
+    /// Returns true if hair, the head or a rectangle blocks a ray to a light.
     #[inline]
     #[must_use]
     pub fn blocked(&self, ray: &Ray) -> bool {
@@ -116,7 +116,7 @@ impl Scene {
             || self.tree.occluded(ray)
     }
 
-    /// Takes the radiance from directions that an ellipsoidal head blocks: so cheap a test that
+    /// Removes the radiance from directions that an ellipsoidal head blocks. The test is so cheap that
     /// candidates for rays pass it first.
     #[inline]
     pub fn remove_blocked(&self, origin: Vec3, light: &mut LightSample8) {
@@ -131,7 +131,7 @@ impl Scene {
         light.radiance = light.radiance.map(|channel| channel & clear);
     }
 
-    /// Places of the rectangles that emit.
+    /// Iterates over the indices of the rectangles that emit.
     fn lamps(&self) -> impl Iterator<Item = usize> {
         self.rectangles
             .iter()
@@ -140,19 +140,19 @@ impl Scene {
             .map(|(index, _)| index)
     }
 
-    /// How a lamp is seen from a point; `None` from behind.
+    /// Returns the view of a lamp from a point, or `None` from behind.
     #[inline]
     fn view(&self, lamp: usize, origin: Vec3) -> Option<View> {
         self.rectangles[lamp].view(origin, self.rectangle_sampling)
     }
 
-    /// Probability of each light: all are equally likely.
+    /// Returns the probability of each light; all are equally likely.
     fn share(&self) -> f32 {
         let lights = self.lamps().count() + usize::from(!self.sky.is_black());
         1.0 / lights.max(1) as f32
     }
 
-    /// The lamp that a number chooses, or the sky.
+    /// Returns the lamp that a number selects, or `None` for the sky.
     fn lamp(&self, choice: f32) -> Option<usize> {
         #[expect(
             clippy::cast_possible_truncation,
@@ -163,7 +163,7 @@ impl Scene {
         self.lamps().nth(index)
     }
 
-    /// A direction towards a light, from two numbers for the direction and one for the choice.
+    /// Draws a direction towards a light, from two numbers for the direction and one for the choice of the light.
     #[inline]
     #[must_use]
     pub fn sample_light(&self, origin: Vec3, [x, y, choice]: [f32; 3]) -> Option<LightSample> {
@@ -177,7 +177,7 @@ impl Scene {
         })
     }
 
-    /// Eight directions towards lights from a point per lane, as [`sample_light`](Self::sample_light) draws them. Where there is a
+    /// Draws eight directions towards lights from a point per lane, as [`sample_light`](Self::sample_light) draws one. If there is a
     /// `sky`, directions towards it are its lanes.
     #[inline]
     #[must_use]
@@ -207,8 +207,8 @@ impl Scene {
         }))
     }
 
-    /// The lights in eight directions from a point: the lamp that a ray would meet if there were nothing else, or the sky. What is
-    /// nearer is not looked at.
+    /// Returns the lights in eight directions from a point: the lamp that a ray would meet if there were nothing else, or the sky. Nearer
+    /// objects are not considered.
     #[must_use]
     pub fn lights_along(&self, origin: Vec3, direction: &Vec3x8) -> LightSample8 {
         if self.lamps().next().is_none() {
@@ -237,7 +237,7 @@ impl Scene {
         }))
     }
 
-    /// Radiance along a ray that met no hair and no surface.
+    /// Returns the light along a ray that met no hair and no surface, or `None` if there is none.
     #[inline]
     #[must_use]
     pub fn see(&self, ray: &Ray, met: &Met) -> Option<Seen> {
@@ -252,8 +252,8 @@ impl Scene {
         })
     }
 
-    /// Radiance along a ray from the camera that met no hair and no surface: of the backdrop, if there is one, where there is
-    /// nothing.
+    /// Returns the radiance along a ray from the camera that met no hair and no surface. If there is a backdrop, it takes the place of
+    /// the sky.
     #[inline]
     #[must_use]
     pub fn see_from_camera(&self, ray: &Ray, met: &Met) -> Option<Vec3> {
@@ -263,7 +263,7 @@ impl Scene {
         }
     }
 
-    /// The lamp that a ray would meet if there were nothing else, and how far away it is; or the sky.
+    /// Returns the lamp that a ray would meet if there were nothing else, with its distance, or `None` for the sky.
     #[inline]
     fn lamp_along(&self, origin: Vec3, direction: Vec3) -> (Option<usize>, f32) {
         let mut nearest = (None, f32::INFINITY);
@@ -279,7 +279,7 @@ impl Scene {
     }
 }
 
-/// The lamp that was last seen, and from where: most directions from a point are towards the same.
+/// View of the lamp that was last seen, and from where, because most directions from a point are towards the same lamp.
 #[derive(Default)]
 struct Views(Option<(usize, Vec3, Option<View>)>);
 

@@ -1,4 +1,4 @@
-//! Scenes by name: the set-ups of the paper's figures, and two that test transport.
+//! Scenes by name: the set-ups of the paper's figures, one for fits, and two that test transport.
 
 use crate::camera::Camera;
 use crate::geometry::{Bounds, Flattening, Groom, HEAD, Kind, Strands};
@@ -37,21 +37,21 @@ pub enum Name {
     FurnaceIso,
 }
 
-/// Default settings of a scene.
+/// Default settings of a scene, which flags may replace.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Defaults {
-    /// How light is estimated.
+    /// Integrator that estimates the light.
     pub integrator: Integrator,
-    /// The preset of the hair.
+    /// Name of the preset of the hair.
     pub preset: &'static str,
-    /// Samples of a pixel.
+    /// Samples per pixel.
     pub samples: u32,
     /// Whether hair passes light on to hair.
     pub multiple: bool,
 }
 
 impl Name {
-    /// The name on the command line.
+    /// Returns the name of the scene on the command line.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -68,7 +68,7 @@ impl Name {
         }
     }
 
-    /// Default settings of the scene.
+    /// Returns the default settings of the scene, which flags may replace.
     #[must_use]
     pub fn defaults(self) -> Defaults {
         let gather = |preset| Defaults {
@@ -95,7 +95,7 @@ impl Name {
         }
     }
 
-    /// The hair that grows in it.
+    /// Returns the kind of procedural hair that grows in the scene.
     #[must_use]
     pub fn kind(self) -> Kind {
         match self {
@@ -111,18 +111,18 @@ impl Name {
 ///
 /// # Errors
 ///
-/// If there are too many.
+/// Returns a usage error if the count of strands is out of its range.
 pub fn grow(name: Name, count: usize) -> Result<Strands, Error> {
     groom(name, count)
         .grow(&Flattening::default())
         .map_err(|problem| Error::Usage(problem.to_string()))
 }
 
-/// About how many segments [`grow`] will make.
+/// Estimates how many segments [`grow`] will make, without growing all strands.
 ///
 /// # Errors
 ///
-/// If there are too many strands.
+/// Returns a usage error if the count of strands is out of its range.
 pub fn estimate_segments(name: Name, count: usize) -> Result<u64, Error> {
     groom(name, count)
         .estimate_segments(&Flattening::default())
@@ -142,7 +142,7 @@ fn groom(name: Name, count: usize) -> Groom {
     }
 }
 
-/// Places of the four lamps, cm: behind, to the sides and above.
+/// Positions of the four lamps, in cm: behind, to the sides and above.
 const LAMPS: [[f32; 3]; 4] = [
     [-30.0, 40.0, -75.0],
     [60.0, 30.0, 50.0],
@@ -150,19 +150,19 @@ const LAMPS: [[f32; 3]; 4] = [
     [10.0, 80.0, 20.0],
 ];
 
-/// Parts of a scene beside its name.
+/// Parts of which a scene is built, beside its name.
 #[derive(Debug)]
 pub struct Parts {
-    /// The fibres.
+    /// Fibres of the hair.
     pub strands: Strands,
-    /// Whether they were read from a file: camera and lights then go by the extent of the hair, and
-    /// of a mesh under it.
+    /// Whether the fibres were read from a file, so that camera and lights depend on the extent of the
+    /// hair, and of a mesh under it.
     pub imported: bool,
-    /// The head under hair from a file; procedural hair has its own.
+    /// Head under hair from a file; procedural hair has its own.
     pub head: Option<Head>,
-    /// Their material.
+    /// Material of the hair.
     pub hair: Hair,
-    /// An environment map in place of the scene's light.
+    /// Environment map in place of the scene's light.
     pub env: Option<Environment>,
     /// Width and height of the picture in pixels.
     pub size: [u32; 2],
@@ -170,11 +170,11 @@ pub struct Parts {
     pub turn: f32,
 }
 
-/// Builds a scene.
+/// Builds a scene from its parts: the tree, the lights, the camera and the head.
 ///
 /// # Errors
 ///
-/// If the strands are too thin for their extent.
+/// Returns a usage error if the strands are too thin for their extent.
 pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
     let Parts {
         strands,
@@ -186,7 +186,7 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
         turn,
     } = parts;
     let tree = Tree::build(&strands).map_err(|problem| Error::Usage(problem.to_string()))?;
-    // A fitted ellipsoid goes on where there is no hair.
+    // A mesh counts, but not a fitted ellipsoid, which extends to where there is no hair.
     let beside = match &head {
         Some(head) if head.triangles() > 0 => head.bounds(),
         _ => Bounds::EMPTY,
@@ -267,7 +267,7 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
     })
 }
 
-/// A box of 60 cm with a light below its ceiling, open towards the camera.
+/// Returns a box of 60 cm with a light below its ceiling, open towards the camera.
 fn cornell_box(centre: Vec3, scale: f32) -> Vec<Rectangle> {
     let at = |x: f32, y: f32, z: f32| centre + scale * Vec3::new(x, y, z);
     let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| 60.0 * scale * axis);

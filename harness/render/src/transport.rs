@@ -1,4 +1,4 @@
-//! Light transport: from a scene to the sums of a film.
+//! Light transport, which turns a scene into the sums of a film.
 
 mod clock;
 mod cut_off;
@@ -38,7 +38,7 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// Word of the command line.
+    /// Returns the word that selects the integrator on the command line.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -48,7 +48,7 @@ impl Integrator {
         }
     }
 
-    /// Samples of a pass over a picture that grows. With [`Gather`](Self::Gather), each pass finds its shading points again.
+    /// Returns the samples of a pass over a picture that grows. With [`Gather`](Self::Gather), each pass finds its shading points again.
     #[must_use]
     pub fn pass(self) -> u32 {
         if self == Self::Gather {
@@ -73,8 +73,8 @@ pub enum Mis {
 }
 
 impl Mis {
-    /// Weight of a sample of density `pdf` that the other strategy would have drawn with density `other`: squared, and
-    /// over the sum of squares.
+    /// Returns the weight of a sample of density `pdf` that the other strategy would have drawn with density `other`: the square
+    /// of `pdf` over the sum of both squares.
     #[inline]
     fn power(pdf: f32, other: f32) -> f32 {
         let ratio = f64::from(other) / f64::from(pdf);
@@ -83,7 +83,7 @@ impl Mis {
         weight
     }
 
-    /// Weight of a sample of a light.
+    /// Returns the weight of a sample of a light.
     #[inline]
     fn of_light(self, pdf: f32, bsdf: f32) -> f32 {
         match self {
@@ -93,7 +93,7 @@ impl Mis {
         }
     }
 
-    /// Weight of a sample of the BSDF that met a light.
+    /// Returns the weight of a sample of the BSDF that met a light.
     #[inline]
     fn of_bsdf(self, pdf: f32, light: f32) -> f32 {
         match self {
@@ -104,26 +104,26 @@ impl Mis {
     }
 }
 
-/// How a picture is made of a scene.
+/// Settings by which a picture is rendered from a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// How light is estimated.
+    /// Integrator that estimates the light.
     pub integrator: Integrator,
     /// Source of uniform numbers.
     pub sequence: Sequence,
     /// Seed of the samples.
     pub seed: u64,
-    /// Which samples count.
+    /// Samples that count where light and BSDF samples both find a light.
     pub mis: Mis,
-    /// Most scatterings of a path; `None` for paths of any length.
+    /// Largest number of scatterings of a path; `None` for paths of any length.
     pub depth: Option<u32>,
-    /// Whether paths that have lost throughput end at random, their survivors weighted.
+    /// Whether paths that have lost throughput end at random, with their survivors weighted.
     pub roulette: bool,
     /// Whether a path that comes from hair goes on where it meets hair.
     pub multiple: bool,
-    /// Camera rays of a pixel for [`Integrator::Gather`].
+    /// Camera rays per pixel for [`Integrator::Gather`].
     pub rays: u32,
-    /// Whether to measure where the time goes: [`Film::profile`].
+    /// Whether the time of each part of the work is measured: [`Film::profile`].
     pub profile: bool,
 }
 
@@ -143,12 +143,12 @@ impl Default for Settings {
     }
 }
 
-/// Samples of a pixel in one wave.
+/// Samples per pixel in one wave.
 const PASS: u32 = 4;
 
-/// Adds samples to a film until every pixel has `samples`. `progress` is called with the share that is done.
+/// Adds samples to a film until every pixel has `samples`. Calls `progress` with the share that is done.
 ///
-/// The film has the same bits for any number of threads, and whether samples are added at once or bit by bit.
+/// The film has the same bits for any number of threads, and for samples that are added at once or bit by bit.
 pub fn render(
     scene: &Scene,
     settings: &Settings,
@@ -159,8 +159,8 @@ pub fn render(
     render_until(scene, settings, film, samples, progress, &|| false);
 }
 
-/// Renders until `stop` returns true. It is asked after each tile: at
-/// least one gets its samples.
+/// Adds samples as [`render`] does, until `stop` returns true. `stop` is called after each tile, so
+/// that at least one tile gets its samples.
 pub fn render_until(
     scene: &Scene,
     settings: &Settings,
@@ -203,10 +203,10 @@ pub fn render_until(
     film.profile.add(whole.into_inner().unwrap_or_default());
 }
 
-/// Whether to begin no further tile.
+/// Function that returns true if no further tile is to be begun.
 pub type Stop<'a> = dyn Fn() -> bool + Sync + 'a;
 
-/// Works on tiles on all threads, until `stop` says so after one of them.
+/// Works on tiles on all threads, until `stop` returns true after one of them.
 pub(crate) fn each_until(
     tiles: Vec<&mut Tile>,
     stop: &Stop<'_>,
@@ -221,7 +221,7 @@ pub(crate) fn each_until(
     });
 }
 
-/// The picture of a part of a scene.
+/// Renders a part of the picture of a scene, and returns its film.
 #[must_use]
 pub fn film(scene: &Scene, settings: &Settings, crop: Crop, samples: u32) -> Film {
     let mut film = Film::new(crop);
@@ -250,7 +250,7 @@ fn paths(scene: &Scene, tables: &Tables<'_>, settings: &Settings, tile: &mut Til
     }
 }
 
-/// Whether a ray towards a light reaches it.
+/// Returns true if a ray towards a light reaches it, and counts the ray.
 #[inline]
 fn sees(scene: &Scene, ray: &Ray) -> bool {
     let reached = !scene.blocked(ray);
@@ -258,7 +258,7 @@ fn sees(scene: &Scene, ray: &Ray) -> bool {
     reached
 }
 
-/// Key of a pixel for uniform numbers: the same in every crop.
+/// Returns the key of a pixel for uniform numbers, which is the same in every crop.
 fn key([x, y]: [u32; 2]) -> u64 {
     u64::from(y) << 32 | u64::from(x)
 }

@@ -1,9 +1,9 @@
-//! Which segment or triangle a ray meets first: a tree of boxes, eight to a node, over blocks of
-//! eight segments or triangles.
+//! Search for the segment or triangle that a ray meets first, in a tree of boxes, eight to a node, over
+//! blocks of eight segments or triangles.
 //!
-//! It knows strands, meshes and rays, and no light. Lanes are eight boxes or eight of the others that one ray is tested against, and
-//! [`hairis::simd::Level`] finds their instruction set at run time; hits depend on [`hairis::simd::Level::fuses`] in their last bits,
-//! and on nothing else of the machine.
+//! The tree handles strands, meshes and rays, but no light. Lanes are eight boxes, segments or triangles against which one ray is
+//! tested, and [`hairis::simd::Level`] finds their instruction set at run time. Hits depend on [`hairis::simd::Level::fuses`] in their
+//! last bits, and on nothing else of the machine.
 
 mod block;
 mod build;
@@ -26,16 +26,16 @@ use hairis::simd::Level;
 use node::Node;
 use traverse::{Any, Closest};
 
-/// Scenes are at most this many times as large as the radius of their thinnest strand: distances are computed to about
-/// 2^-22 of the scene, which is then below 3 % of a radius.
+/// Largest size of a scene, relative to the radius of its thinnest strand. Distances are computed to about 2^-22 of the
+/// scene, which is then below 3 % of a radius.
 const LARGEST_SCALE: f32 = 1e5;
 
-/// The least radius of a strand in a scene of this size, with room for what it adds to the size.
+/// Returns the least radius of a strand in a scene of this size, with room for what the radius adds to the size.
 pub(crate) fn thinnest(size: f32) -> f32 {
     1.001 * size / LARGEST_SCALE
 }
 
-/// Finds the segments that rays meet.
+/// Tree of boxes over the segments of strands, which finds the segments that rays meet.
 ///
 /// ```
 /// use glam::Vec3;
@@ -51,7 +51,7 @@ pub(crate) fn thinnest(size: f32) -> f32 {
 #[derive(Clone, Debug)]
 pub struct Tree(Boxes<Block>);
 
-/// Nodes over blocks of eight.
+/// Nodes of a tree over blocks of eight primitives.
 #[derive(Clone, Debug)]
 struct Boxes<B> {
     nodes: Vec<Node>,
@@ -90,11 +90,11 @@ impl<B: Leaf> Boxes<B> {
 }
 
 impl Tree {
-    /// Builds the tree. It is the same for any number of threads.
+    /// Builds the tree over all segments. The tree is the same for any number of threads.
     ///
     /// # Errors
     ///
-    /// If the scene is too large for its radii, see [`TreeError`].
+    /// Returns an error if the scene is too large for its radii, see [`TreeError`].
     pub fn build(strands: &Strands) -> Result<Self, TreeError> {
         let size = strands.bounds().size().length();
         let thickest = |strand| {
@@ -118,41 +118,41 @@ impl Tree {
         ))))
     }
 
-    /// The tree, searched with another instruction set.
+    /// Returns the tree, to be searched with another instruction set.
     #[must_use]
     pub fn at(self, level: Level) -> Self {
         Self(Boxes { level, ..self.0 })
     }
 
-    /// The tree, whose hits are at another place of the strands.
+    /// Returns the tree, with hits at another place of the strands.
     #[must_use]
     pub fn with_meet(self, meet: Meet) -> Self {
         Self(Boxes { meet, ..self.0 })
     }
 
-    /// The place of hits.
+    /// Returns the place of the strands at which rays meet them.
     #[inline]
     #[must_use]
     pub const fn meet(&self) -> Meet {
         self.0.meet
     }
 
-    /// The nearest segment that the ray meets. Of equally near ones it is the one with the lowest number, so that images do
-    /// not depend on the shape of the tree.
+    /// Returns the nearest segment that the ray meets. Among equally near segments, the one with the lowest number is returned, so
+    /// that images do not depend on the shape of the tree.
     #[inline]
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
         self.0.closest(ray)
     }
 
-    /// Whether the ray meets any segment.
+    /// Returns true if the ray meets any segment.
     #[inline]
     #[must_use]
     pub fn occluded(&self, ray: &Ray) -> bool {
         self.0.occluded(ray)
     }
 
-    /// [`closest`](Self::closest), with the nodes and blocks that it looks at added to `visits`.
+    /// Finds the nearest segment as [`closest`](Self::closest) does, and adds the nodes and blocks that it visits to `visits`.
     #[must_use]
     pub fn closest_counted(&self, ray: &Ray, visits: &mut Visits) -> Option<Hit> {
         self.0.level.run(Closest {
@@ -162,7 +162,7 @@ impl Tree {
         })
     }
 
-    /// Number of nodes and blocks.
+    /// Returns the number of nodes and of blocks of the tree.
     #[must_use]
     pub fn size(&self) -> Visits {
         Visits {
@@ -171,14 +171,14 @@ impl Tree {
         }
     }
 
-    /// Its size in bytes.
+    /// Returns the size of the nodes and blocks in bytes.
     #[must_use]
     pub fn memory(&self) -> usize {
         size_of_val(self.0.nodes.as_slice()) + size_of_val(self.0.blocks.as_slice())
     }
 }
 
-/// Why a tree was not built.
+/// Reason why a tree was not built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum TreeError {
@@ -186,7 +186,7 @@ pub enum TreeError {
     Scale {
         /// Diagonal of the scene, in centimetres.
         size: f32,
-        /// The largest radius of the thinnest strand, in centimetres.
+        /// Largest radius of the thinnest strand, in centimetres.
         radius: f32,
     },
 }

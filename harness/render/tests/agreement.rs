@@ -1,4 +1,4 @@
-//! One picture, whatever it is rendered with.
+//! Comparison of pictures that must agree, whatever they are rendered with.
 
 use crate::support::{distance, film, hair, mean, scene};
 use glam::Vec3;
@@ -14,7 +14,7 @@ use hairis_render::transport::{Integrator, Mis, Settings};
 use hairis_render::tree::Tree;
 use hairis_variants::ModelId;
 
-/// Seeds of each mean.
+/// Number of seeds of each mean.
 const RUNS: u64 = 16;
 
 #[test]
@@ -114,7 +114,7 @@ fn samplers_agree() {
     assert!(distance(&means[0], &means[1]) < 4.0, "{means:?}");
 }
 
-/// The scene mirrored in x, by rebuilding its strands; `swap` turns every strand around.
+/// Returns the scene mirrored in x, by rebuilding its strands; `swap` turns every strand around.
 fn rebuilt(scene: &Scene, mirror: bool, swap: bool) -> Scene {
     let turned = |v: Vec3| if mirror { Vec3::new(-v.x, v.y, v.z) } else { v };
     let mut builder = Strands::builder();
@@ -154,7 +154,7 @@ fn rebuilt(scene: &Scene, mirror: bool, swap: bool) -> Scene {
     other
 }
 
-/// Means of the left and of the right half of a picture, over seeds.
+/// Returns the means of the left and of the right half of a picture, over seeds.
 fn halves(scene: &Scene, seed: u64) -> [hairis_instruments::stats::Estimate; 2] {
     let settings = Settings {
         integrator: Integrator::Direct,
@@ -184,7 +184,7 @@ fn halves(scene: &Scene, seed: u64) -> [hairis_instruments::stats::Estimate; 2] 
     sums.map(|sum| sum.mean_estimate())
 }
 
-/// A head lit from the side, so that its halves differ.
+/// Returns a head lit from the side, so that its halves differ.
 fn lopsided(hair: Hair) -> Scene {
     let mut one = scene(Name::AreaHead, hair, 1200, 16);
     one.rectangles = vec![Rectangle::light(
@@ -211,7 +211,7 @@ fn a_mirrored_scene_gives_the_mirror_image() {
     );
 }
 
-/// Parallel strands seen across, with a small light at an inclination of -0.2 rad: half the sum of the inclinations is -0.1,
+/// Returns parallel strands seen across, with a small light at an inclination of -0.2 rad: half the sum of the inclinations is -0.1,
 /// and all lobes are shifted by `alpha`.
 fn at_the_highlight(alpha: f32) -> Scene {
     let id = ModelId::find("gaussian", Some("matched")).expect("listed");

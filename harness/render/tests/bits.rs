@@ -1,4 +1,4 @@
-//! Bits of pictures: those of the seed, whatever the threads.
+//! Bits of pictures, which depend on the seed and not on the threads.
 
 use crate::support::{film, hair, scene};
 use glam::Vec3;
@@ -7,7 +7,7 @@ use hairis_render::scene::Scene;
 use hairis_render::scenes::Name;
 use hairis_render::transport::{self, Integrator, Mis, Settings};
 
-/// Sums of a film, which must not depend on the machine's load.
+/// Returns the sums of a film as bits, which must not depend on the machine's load.
 fn sums(film: &Film) -> Vec<(Crop, u32, Vec<[u64; 4]>)> {
     let bits = |sums: &hairis_render::film::Sums| {
         let [r, g, b] = sums.radiance.map(f64::to_bits);

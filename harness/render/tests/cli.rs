@@ -1,4 +1,4 @@
-//! The program, as it is run from a shell.
+//! Tests of the program, run as from a shell.
 
 mod fit;
 mod frames;
@@ -27,7 +27,7 @@ fn run(folder: &TempDir, flags: &[impl AsRef<OsStr>]) -> Output {
         .expect("it starts")
 }
 
-/// Runs it, and sees that it ends well.
+/// Runs the program, and checks that it succeeds.
 fn succeed(folder: &TempDir, flags: &[&str]) -> String {
     let output = run(folder, flags);
     let errors = String::from_utf8_lossy(&output.stderr);
@@ -40,7 +40,7 @@ fn render(folder: &TempDir, flags: &[&str]) -> String {
     succeed(folder, &[&["render"], flags, &SMALL].concat())
 }
 
-/// The last line of what it says when it refuses: the program's own, after remarks on the hair.
+/// Runs the program, and returns the last line of its error: the program's own, after remarks on the hair.
 fn refuse(folder: &TempDir, flags: &[&str]) -> String {
     let output = run(folder, flags);
     let errors = String::from_utf8_lossy(&output.stderr);
@@ -50,7 +50,7 @@ fn refuse(folder: &TempDir, flags: &[&str]) -> String {
     line
 }
 
-/// Channels of a picture by name, to the bit.
+/// Returns the channels of a picture by name, as bits.
 fn channels(folder: &TempDir, file: impl AsRef<Path>) -> Vec<(String, Vec<u32>)> {
     let file = read_all_flat_layers_from_file(folder.path().join(file)).expect("a picture");
     let [layer] = &file.layer_data[..] else {

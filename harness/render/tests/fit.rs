@@ -28,7 +28,7 @@ fn choice(model: &str, preset: &str) -> Choice {
     Choice::find(model, default_sampler(model), preset).expect("listed")
 }
 
-/// A small picture with a lamp and a sky.
+/// Returns a small picture's scene with a lamp and a sky.
 fn small(name: Name, hair: &Choice, side: u32) -> Scene {
     let hair = hair.hair(Energy::Raw).expect("in range");
     let mut scene = scene(name, hair, 2000, side);
@@ -38,8 +38,8 @@ fn small(name: Name, hair: &Choice, side: u32) -> Scene {
     scene
 }
 
-/// Recorded paths are those of the renderer: their light with the material that drew them is the picture, for every kind of light
-/// and surface, and with both ways to sample them.
+/// Checks that recorded paths are those of the renderer: with the material that drew them, their light is the picture, for every kind of
+/// light and surface, and with both ways to sample them.
 #[test]
 fn recorded_paths_are_those_of_the_renderer() {
     for (name, model) in [
@@ -104,7 +104,7 @@ fn recorded_paths_are_those_of_the_renderer() {
     }
 }
 
-/// The gradient of the picture's distance is that of central differences with the same paths, for every parameter of every model.
+/// Checks the gradient of the picture's distance against central differences with the same paths, for every parameter of every model.
 #[test]
 fn gradients_are_those_of_differences() {
     for id in ModelId::defaults_of_names() {
@@ -163,7 +163,7 @@ fn gradients_are_those_of_differences() {
     }
 }
 
-/// A close picture of hair under lamps, with so few strands that each covers a pixel: part of a picture of four times the side.
+/// Returns a close view of hair under lamps, with so few strands that each covers a pixel: part of a picture of four times the side.
 fn close(hair: &Choice, strands: usize, side: u32) -> (Scene, Crop) {
     let hair = hair.hair(Energy::Raw).expect("in range");
     let scene = scene(Name::Lamps, hair, strands, 4 * side);
@@ -176,7 +176,7 @@ fn close(hair: &Choice, strands: usize, side: u32) -> (Scene, Crop) {
     (scene, crop)
 }
 
-/// Hair with its shifts, widths and colours off by factors of 0.7 or 1.3: bits of `signs` say which.
+/// Returns hair whose shifts, widths and colours are off by factors of 0.7 or 1.3, as the bits of `signs` select.
 fn off(hair: &Choice, signs: u64) -> Choice {
     let variables = Variables::new(&hair.values, &[], &[]);
     let factor = |k: usize| if signs >> k & 1 == 0 { 0.7_f64 } else { 1.3 };
@@ -188,7 +188,7 @@ fn off(hair: &Choice, signs: u64) -> Choice {
     }
 }
 
-/// Numbers that the factors are read off: a shift, a width and the colour of TT.
+/// Numbers from which the factors are read: a shift, a width and the colour of TT.
 const READ: [(&str, &str, usize); 5] = [
     ("alpha.R", "alpha", 0),
     ("beta.R", "beta", 0),
@@ -197,7 +197,7 @@ const READ: [(&str, &str, usize); 5] = [
     ("i_tt.b", "i_tt", 2),
 ];
 
-/// A picture of a preset, and what it was made of.
+/// Picture of a preset, and the material it was rendered with.
 struct Shown {
     truth: Choice,
     scene: Scene,
@@ -257,7 +257,7 @@ fn a_picture_gives_its_material_back() {
     }
 }
 
-/// Every preset from one picture, with five seeds and starts: prints the errors, and writes them with `HAIRIS_RECORD=write`.
+/// Recovers every preset from one picture, with five seeds and starts. Prints the errors, and writes them with `HAIRIS_RECORD=write`.
 #[test]
 #[ignore = "slow: 8 minutes on two idle cores"]
 fn pictures_give_every_preset_back() {
@@ -304,7 +304,7 @@ fn pictures_give_every_preset_back() {
     assert!(far.is_empty(), "further than 3% from the truth: {far:?}");
 }
 
-/// Writes the rows that there are, after each seed.
+/// Writes the rows so far, after each seed.
 fn write_record(rows: &[String]) {
     let path = concat!(
         env!("CARGO_MANIFEST_DIR"),

@@ -1,4 +1,4 @@
-//! Hair in a white sphere: what comes back is the albedo.
+//! Furnace tests: hair in a white sphere returns its albedo.
 
 use crate::support::{film, hair, inclination, mean, scene};
 use glam::Vec3;
@@ -18,7 +18,7 @@ use hairis_variants::ModelId;
 const SIDE: u32 = 4;
 const MIS: [Mis; 4] = [Mis::Light, Mis::Bsdf, Mis::Both, Mis::Resampled];
 
-/// Albedo of hair by the midpoint rule over the sphere of `wi`: nothing of the samplers is in it.
+/// Returns the albedo of hair by the midpoint rule over the sphere of `wi`, independently of the samplers.
 fn albedo(hair: &Hair, theta_o: f32, h: f32) -> f64 {
     use core::f32::consts::PI;
     let wo = Vec3::new(theta_o.sin(), theta_o.cos(), 0.0);
@@ -47,7 +47,7 @@ fn albedo(hair: &Hair, theta_o: f32, h: f32) -> f64 {
     sum * d_theta * d_phi
 }
 
-/// The strand of `furnace-one`, seen at an inclination.
+/// Returns the scene `furnace-one`, whose strand is seen at an inclination.
 fn strand(hair: Hair, theta_o: f32) -> Scene {
     let mut one = scene(Name::FurnaceOne, hair, 1, SIDE);
     let eye = 100.0 * Vec3::new(theta_o.sin(), 0.0, theta_o.cos());
@@ -144,7 +144,7 @@ fn every_model_returns_its_albedo_near_field_ones_by_offset() {
     }
 }
 
-/// Sees that a channel of pictures has the white sphere's mean, with a standard error below `most`.
+/// Checks that a channel of pictures has the white sphere's mean, with a standard error below `most`.
 fn check_invisible(scene: &Scene, settings: &Settings, channel: usize, most: f64) {
     let got = mean(scene, settings, 4, 16, channel);
     let (mis, roulette) = (settings.mis, settings.roulette);
@@ -175,8 +175,8 @@ fn hair_that_absorbs_nothing_is_invisible() {
     }
 }
 
-/// Every path of unscaled weights finds the white sphere: without roulette, and with it, because it
-/// ends no path that nothing has absorbed.
+/// Checks that every path of unscaled weights finds the white sphere, without roulette and with it, because
+/// roulette ends no path that nothing has absorbed.
 #[test]
 fn no_pixel_of_hair_that_absorbs_nothing_has_noise() {
     let with_roulette = Settings {
@@ -206,7 +206,7 @@ fn no_pixel_of_hair_that_absorbs_nothing_has_noise() {
     }
 }
 
-/// Chiang's fibre without absorption.
+/// Returns Chiang's fibre without absorption.
 fn clear() -> Hair {
     let id = ModelId::Chiang;
     let values = id.defaults().with("sigma_a", &[0.0; 3]);

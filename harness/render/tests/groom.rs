@@ -1,4 +1,4 @@
-//! Procedural hair.
+//! Tests of procedural hair.
 
 use hairis_render::geometry::{Flattening, GeometryError, Groom, HEAD, Kind, Strands};
 

@@ -21,7 +21,7 @@ fn read(name: &str, file: &str) -> Result<Mesh, String> {
         .map_err(|error| error.to_string())
 }
 
-/// A quad and a triangle.
+/// Mesh of a quad and a triangle.
 const OBJ: &str = "# \n mtllib none.mtl\no one\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nusemtl skin\nf 1//1 2//1 3//1 4//1\n\
     g two\nv 0 0 2 1 0 0\nf -1 1 2\nl 1 2\n";
 const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n\
@@ -146,7 +146,7 @@ fn wrong_meshes_are_refused_in_one_line() {
     assert!(error.to_string().contains("`head-scale`"), "{error}");
 }
 
-/// An ellipsoid of many triangles.
+/// Returns an ellipsoid of many triangles.
 fn mesh(Ellipsoid { centre, radii }: Ellipsoid, rings: u32) -> Mesh {
     let around = 2 * rings;
     let place = |ring: u32, k: u32| {
@@ -171,7 +171,7 @@ fn mesh(Ellipsoid { centre, radii }: Ellipsoid, rings: u32) -> Mesh {
     Mesh::new(places.collect(), triangles.collect()).expect("a ball")
 }
 
-/// A head below hair that stands away from it, as if it were from a file.
+/// Returns a head below hair that stands away from it, as if the hair were from a file.
 fn scene(head: Option<Head>) -> Scene {
     let strands = Groom::new(Kind::Fur, 400)
         .grow(&Flattening::default())
@@ -252,7 +252,7 @@ fn a_white_mesh_in_a_white_sphere_does_not_show() {
     );
 }
 
-/// Strands that begin at these places.
+/// Returns strands that begin at these places.
 fn roots(places: impl IntoIterator<Item = Vec3>) -> Strands {
     let mut builder = Strands::builder();
     for place in places {
@@ -263,7 +263,7 @@ fn roots(places: impl IntoIterator<Item = Vec3>) -> Strands {
     builder.finish()
 }
 
-/// Roots on the part of an ellipsoid above `lowest` of its height, `noise` of its size off the
+/// Returns roots on the part of an ellipsoid above `lowest` of its height, `noise` of its size off the
 /// surface.
 fn on(ellipsoid: Ellipsoid, count: usize, lowest: f32, noise: f32) -> Vec<Vec3> {
     let mut xi = Independent::new(9, 0);

@@ -1,4 +1,4 @@
-//! Files of hair: what they hold, and each refusal.
+//! Tests of files of hair: the strands that they hold, and each rejection.
 
 mod refused;
 mod research;
@@ -24,7 +24,7 @@ const STRAIGHT: Import = Import {
     },
 };
 
-/// A cyHair file: two strands of two and one segments, thickness 0.02.
+/// Returns a cyHair file: two strands of two and one segments, thickness 0.02.
 fn hair() -> Vec<u8> {
     let mut file = b"HAIR".to_vec();
     for number in [2_u32, 5, 1 | 2, 0] {
@@ -45,7 +45,7 @@ fn hair() -> Vec<u8> {
     file
 }
 
-/// A `TressFX` file: two strands of four nodes.
+/// Returns a `TressFX` file: two strands of four nodes.
 fn tfx() -> Vec<u8> {
     let mut file = 4_f32.to_le_bytes().to_vec();
     for number in [2_u32, 4, 160] {
@@ -60,7 +60,7 @@ fn tfx() -> Vec<u8> {
     file
 }
 
-/// The file with four bytes changed.
+/// Returns the file with four bytes changed.
 fn with(mut file: Vec<u8>, offset: usize, bytes: [u8; 4]) -> Vec<u8> {
     file[offset..offset + 4].copy_from_slice(&bytes);
     file
@@ -78,7 +78,7 @@ fn read(name: &str, file: &[u8], options: &Import) -> Result<Imported, ImportErr
     import_bytes(Path::new(name), file, options)
 }
 
-/// Remarks but for that on the radius of few strands, which is thick where the file has none.
+/// Returns the remarks, except the one on the radius of few strands, which is thick where the file has none.
 fn remarks(imported: Imported) -> Vec<String> {
     let mut remarks = imported.remarks;
     remarks.retain(|remark| !remark.contains("exceed a tenth of their lengths"));
@@ -214,7 +214,7 @@ fn curves_go_through_the_nodes_of_a_file() {
     }
 }
 
-/// Any bytes: an error or hair, never a panic, and never more than 64 bytes per byte of the file.
+/// Checks that any bytes give an error or hair, never a panic, and never more than 64 bytes per byte of the file.
 #[test]
 fn no_bytes_make_it_panic_or_grow() {
     let mut random = ChaCha8Rng::seed_from_u64(3);

@@ -1,4 +1,4 @@
-//! Tests of the renderer.
+//! Integration tests of the renderer.
 
 mod agreement;
 mod bits;

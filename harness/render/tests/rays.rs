@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use std::time::Instant;
 
-/// Rays of a camera, in tiles of 8 by 8, and rays in all directions from what they meet, `bounces` times over.
+/// Returns the rays of a camera, in tiles of 8 by 8, and rays in all directions from what they meet, `bounces` times over.
 fn rays(strands: &Strands, tree: &Tree, side: usize, bounces: usize) -> [Vec<Ray>; 2] {
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let mut number = || (random.next_u32() >> 8) as f32 / (1 << 24) as f32;
@@ -58,7 +58,7 @@ fn rays(strands: &Strands, tree: &Tree, side: usize, bounces: usize) -> [Vec<Ray
     [primary, secondary]
 }
 
-/// Nodes and blocks per ray.
+/// Returns the nodes and blocks that a search visits per ray.
 fn visits(tree: &Tree, rays: &[Ray]) -> [f64; 2] {
     let mut visits = Visits::default();
     for ray in rays {
@@ -72,7 +72,7 @@ fn visits(tree: &Tree, rays: &[Ray]) -> [f64; 2] {
     [visits.nodes, visits.blocks].map(|n| n as f64 / rays.len() as f64)
 }
 
-/// Time without a clock. A change of more than 3 % is to be meant, and written here.
+/// Checks work in place of time. A change of more than 3 % must be intended, and recorded here.
 #[test]
 fn rays_look_at_as_much_as_recorded() {
     let strands = Groom::new(Kind::Wavy, 1000)
@@ -89,7 +89,7 @@ fn rays_look_at_as_much_as_recorded() {
     }
 }
 
-/// Prints what `benches/records/rays.csv` records.
+/// Prints the numbers that `benches/records/rays.csv` records.
 #[test]
 #[ignore = "slow: half a minute, and its figures mean something with --release only"]
 fn rays_per_second() {

@@ -1,4 +1,4 @@
-//! A ray against a segment.
+//! Tests of a ray against a segment.
 
 use glam::{DVec3, Vec3};
 use hairis_render::geometry::{Builder, Strands};

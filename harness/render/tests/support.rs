@@ -9,7 +9,7 @@ use hairis_render::scene::Scene;
 use hairis_render::scenes::{self, Name, Parts};
 use hairis_render::transport::{self, Settings};
 
-/// Hair by name.
+/// Returns hair by the names of its model, sampler and preset.
 pub(crate) fn hair(model: &str, sampler: &str, preset: &str) -> Hair {
     Choice::find(model, sampler, preset)
         .expect("listed")
@@ -17,7 +17,7 @@ pub(crate) fn hair(model: &str, sampler: &str, preset: &str) -> Hair {
         .expect("in range")
 }
 
-/// A scene with little hair in a small picture.
+/// Returns a scene with little hair in a small picture.
 pub(crate) fn scene(name: Name, hair: Hair, strands: usize, side: u32) -> Scene {
     let strands = scenes::grow(name, strands).expect("a few strands");
     let parts = Parts {
@@ -32,12 +32,12 @@ pub(crate) fn scene(name: Name, hair: Hair, strands: usize, side: u32) -> Scene 
     scenes::build(name, parts).expect("a scene")
 }
 
-/// A film of the whole picture.
+/// Renders the whole picture of a scene, and returns its film.
 pub(crate) fn film(scene: &Scene, settings: &Settings, samples: u32) -> Film {
     transport::film(scene, settings, Crop::whole(scene.camera.size()), samples)
 }
 
-/// Mean of a channel over the picture, from renders with `runs` seeds, with its standard error.
+/// Returns the mean of a channel over the picture, from renders with `runs` seeds, with its standard error.
 pub(crate) fn mean(
     scene: &Scene,
     settings: &Settings,
@@ -61,12 +61,12 @@ pub(crate) fn mean(
         .mean_estimate()
 }
 
-/// Distance of two independent estimates in standard errors.
+/// Returns the distance of two independent estimates in standard errors.
 pub(crate) fn distance(a: &Estimate, b: &Estimate) -> f64 {
     (a.value - b.value).abs() / a.standard_error.hypot(b.standard_error)
 }
 
-/// The direction from the hair of a pixel's centre to the camera, in the frame of fibres along x.
+/// Returns the inclination, in rad, of the direction from a pixel's centre to the camera, for fibres along x.
 pub(crate) fn inclination(scene: &Scene, x: u32, y: u32) -> f32 {
     let ray = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
     (-ray.direction).dot(Vec3::X).asin()

@@ -1,4 +1,4 @@
-//! The errors of one packet, by code path and quantity.
+//! Errors of one packet, by code path and quantity.
 
 use super::packet::Packet;
 use super::{Quantity, Region};
@@ -14,7 +14,7 @@ use wide::f32x8;
 /// Rounding error of an azimuth, rad: a few units in the last place of a component near 1.
 const ROUNDING: f64 = 1.0 / 4_194_304.0;
 
-/// Code path.
+/// Code path of the kernels, with the instruction set of its lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CodePath {
     /// One direction per call.
@@ -49,23 +49,23 @@ impl CodePath {
     }
 }
 
-/// One error, and its place.
+/// Error of one quantity, and where it occurred.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LocatedError {
     pub(super) error: f64,
-    /// Beyond the bound, and not because the azimuth is rounded.
+    /// Whether the error is beyond the bound and rounding the azimuth does not explain it.
     pub(super) unexplained: bool,
     pub(super) at: LanePlace,
 }
 
-/// A lane of a packet: the shading point, and the direction.
+/// Lane of a packet: the shading point and the direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LanePlace {
     pub(super) values: Values,
     pub(super) wo: Vec3,
     pub(super) h: f32,
     pub(super) wi: Vec3,
-    /// The numbers `wi` was sampled with, if any.
+    /// Uniform numbers that `wi` was sampled with, if any.
     pub(super) xi: Option<[f32; 3]>,
 }
 
@@ -151,7 +151,7 @@ pub(super) fn measure(
     Ok(())
 }
 
-/// The formulas at one place.
+/// Formulas at one place, which the kernels are compared with.
 struct Exact<'a> {
     model: ModelId,
     accuracy: Accuracy,
@@ -160,7 +160,7 @@ struct Exact<'a> {
 }
 
 impl Exact<'_> {
-    /// Calls `keep` with the errors of what is said of the direction, and of the sample that it is.
+    /// Passes to `keep` the errors of value and density at the direction and, if the direction is a sample, those of its weight and cdf.
     fn errors(
         &self,
         eval: &Eval,
@@ -202,7 +202,7 @@ impl Exact<'_> {
         Ok(())
     }
 
-    /// The error of `got` against `truth` at the direction.
+    /// Returns the error of `got` against `truth` at the direction.
     fn compare<const N: usize>(
         &self,
         quantity: Quantity,
@@ -232,8 +232,8 @@ impl Exact<'_> {
         }
     }
 
-    /// Distance of the lobe's cdf at the direction from the numbers it was sampled with, on the circle of length 1: both
-    /// ends of the cosines' cdf are the same direction.
+    /// Returns the distance of the lobe's cdf at the direction from the numbers that the direction was sampled with. Azimuths are compared
+    /// on a circle of length 1, because both ends of the cosines' cdf are the same direction.
     fn cdf(&self, lobe: Lobe) -> Option<LocatedError> {
         let (xi, wi) = (self.place.xi?, to_f64(self.place.wi));
         let azimuth = |[_, v, w]: [f64; 3]| w.atan2(v);
@@ -252,21 +252,21 @@ impl Exact<'_> {
         })
     }
 
-    /// Absolute error of a density that the model allows by design, by that of S. A density proportional to S, as the mean of RGB,
-    /// vanishes with it.
+    /// Returns the absolute error of a density that the model allows by design, given the absolute error of S. A density proportional to S,
+    /// as the mean of RGB, vanishes with S.
     fn pdf_slack(&self, slack: [f64; 3]) -> [f64; 1] {
         if !self.accuracy.slack_in_pdf || slack == [0.0; 3] {
             return [0.0];
         }
         let wi = to_f64(self.place.wi);
         let (slack, value): (f64, f64) = (slack.iter().sum(), self.truth.eval(wi).iter().sum());
-        // Where S is too small for a double, the density may end altogether.
+        // If S is too small for a double, the whole density is allowed as error.
         let share = if value > 0.0 { slack / value } else { 1.0 };
         [share * self.truth.pdf(wi)]
     }
 }
 
-/// Relative error beyond an absolute one of `floor`; NaN counts as infinite.
+/// Returns the relative error in excess of an absolute error of `floor`. NaN counts as infinite.
 fn relative(got: f32, want: f64, floor: f64) -> f64 {
     let excess = (f64::from(got) - want).abs() - floor;
     if excess <= 0.0 {
@@ -278,7 +278,7 @@ fn relative(got: f32, want: f64, floor: f64) -> f64 {
     }
 }
 
-/// The direction turned about the fibre by `angle` rad.
+/// Returns the direction turned about the fibre by `angle` rad.
 fn rotate([u, v, w]: [f64; 3], angle: f64) -> [f64; 3] {
     let (sin, cos) = angle.sin_cos();
     [u, v * cos - w * sin, v * sin + w * cos]

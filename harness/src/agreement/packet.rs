@@ -1,4 +1,4 @@
-//! Eight shading points, and directions and numbers that fall into a region.
+//! Packets of eight shading points, with directions and numbers that fall into a region.
 
 use super::Region;
 use crate::subject::random;
@@ -10,42 +10,42 @@ use hairis_instruments::sequence::{Independent, stream_id};
 use hairis_reference::{Reference, reference};
 use hairis_variants::{ModelId, Values};
 
-/// Between these angles from the axis, rad, a direction is near it.
+/// Least and largest angle to the axis, rad, of a direction that counts as near the axis.
 pub(super) const AXIS: [f64; 2] = [1e-3, 1e-2];
-/// Within this of pi, rad, `|phi|` is near it.
+/// Largest distance from pi, rad, of a `|phi|` that counts as near pi.
 pub(super) const BACK: f64 = 1e-2;
-/// Within this of pi/2, rad, `|phi|` may fall on either side of the cut of the glints' density.
+/// Distance from pi/2, rad, within which a rounded `|phi|` may fall on either side of the cut of the glints' density.
 const CUT: f64 = 1e-6;
-/// Within this of pi, rad, the reference itself has lost the digits of `cos(phi / 2)`: a double at pi is good to 4e-16.
+/// Distance of `|phi|` from pi, rad, within which the reference has lost the digits of `cos(phi / 2)`: a double at pi is good to 4e-16.
 const SEAM: f64 = 1e-9;
 
-/// Formulas of these values, seen from `wo` at the offset `h`.
+/// Function that prepares the formulas of given values, seen from `wo` at the offset `h`.
 pub(super) type Formulas<'a> =
     dyn Fn(&Values, Vec3, f32) -> Result<Box<dyn Reference<f64>>, ParamError> + Sync + 'a;
 
-/// The formulas of a model.
+/// Returns the function that prepares the formulas of a model.
 pub(super) fn formulas(
     model: ModelId,
 ) -> impl Fn(&Values, Vec3, f32) -> Result<Box<dyn Reference<f64>>, ParamError> {
     move |values, wo, h| reference(model, values, to_f64(wo), f64::from(h))
 }
 
-/// Eight materials seen from eight directions, with the directions and the numbers to evaluate and sample.
+/// Eight materials seen from eight directions, with the directions to evaluate and the numbers to sample.
 pub(super) struct Packet {
     pub(super) values: [Values; 8],
     pub(super) wo: [Vec3; 8],
-    /// Offsets across the fibre; 0 for a model of the far field.
+    /// Offsets across the fibre, 0 for a far-field model.
     pub(super) h: [f32; 8],
-    /// One for each shading point.
+    /// Directions, one for each shading point.
     pub(super) wi: [Vec3; 8],
-    /// Eight for the first shading point.
+    /// Directions, all eight for the first shading point.
     pub(super) wi_shared: [Vec3; 8],
     pub(super) xi: [[f32; 3]; 8],
     pub(super) truth: Vec<Box<dyn Reference<f64>>>,
 }
 
 impl Packet {
-    /// Packet `index` of a run; the same whatever other packets are drawn.
+    /// Draws packet `index` of a run, which does not depend on what other packets are drawn.
     pub(super) fn draw(
         model: ModelId,
         formulas: &Formulas<'_>,
@@ -56,7 +56,7 @@ impl Packet {
         let mut from = Independent::new(seed, stream_id(&[0xa9ee, region as u64, index]));
         let values = [(); 8].map(|()| random(model.measured(), &mut from));
         let wo = core::array::from_fn(|_| match region {
-            // Half of the viewers look along the fibre's axis, too.
+            // Half of the viewers look along the fibre's axis as well.
             Region::Axis if from.next_f64() < 0.5 => near_axis(&mut from),
             _ => uniform_direction(&mut from),
         });
@@ -86,7 +86,7 @@ impl Packet {
 }
 
 impl Region {
-    /// A direction in the region.
+    /// Draws a direction in the region.
     fn direction(self, wo: Vec3, from: &mut Independent) -> Vec3 {
         match self {
             Self::General => uniform_direction(from),
@@ -104,7 +104,7 @@ impl Region {
         }
     }
 
-    /// Numbers whose samples often fall into the region.
+    /// Draws uniform numbers whose samples often fall into the region.
     fn numbers(self, from: &mut Independent) -> [f32; 3] {
         let mut xi = [from.next_f32(), from.next_f32(), from.next_f32()];
         #[expect(
@@ -114,9 +114,9 @@ impl Region {
         let mut edge = || 1e-2 * log_uniform(from, 1e-5) as f32;
         match self {
             Self::General => {}
-            // The ends of the inclination.
+            // Both ends of the inclination's distribution.
             Self::Axis => xi[1] = if xi[1] < 0.5 { edge() } else { 1.0 - edge() },
-            // The ends for the cosines of R and TRT, the middle for TT.
+            // Both ends for the cosines of R and TRT, and the middle for TT.
             Self::Back => {
                 xi[2] = match xi[2] {
                     low if low < 0.25 => edge(),
@@ -128,8 +128,8 @@ impl Region {
         xi
     }
 
-    /// Whether the pair of directions is in the region, and where the bounds hold: further than 1e-3 rad from the axis
-    /// off the cut of the glints, and not so close to pi that the oracle fails.
+    /// Returns true if the pair of directions is in the region and the bounds apply to it: further than 1e-3 rad from the axis, off the cut
+    /// of the glints, and not so close to pi that the oracle fails.
     pub(super) fn holds(self, wo: Vec3, wi: Vec3) -> bool {
         let [u, v, w] = [wi.x, wi.y, wi.z].map(f64::from);
         let from_axis = v.hypot(w).atan2(u.abs());
@@ -145,13 +145,13 @@ impl Region {
     }
 }
 
-/// A direction near either end of the axis, its angle to it log-uniform.
+/// Draws a direction near either end of the axis, at a log-uniform angle to it.
 fn near_axis(from: &mut Independent) -> Vec3 {
     let angle = AXIS[1] * log_uniform(from, AXIS[0] / AXIS[1]);
     direction(sign(from) * angle.cos(), angle.sin(), TAU * from.next_f64())
 }
 
-/// Log-uniform in `(least, 1]`.
+/// Draws a log-uniform number in `(least, 1]`.
 fn log_uniform(from: &mut Independent, least: f64) -> f64 {
     least.powf(from.next_f64())
 }

@@ -1,11 +1,11 @@
-//! Numbers with a bound on their error: arithmetic, integrals, and the spread of many.
+//! Numbers with a bound on their error: arithmetic, integrals, and the spread of a collection.
 
 use core::array;
 use core::iter::Sum;
 use hairis_instruments::quadrature::{Tolerance, bell_breakpoints, integrate};
 use hairis_instruments::stats::Estimate;
 
-/// A number and a bound estimate of its error; arithmetic carries the error to first order.
+/// Number with a bound estimate of its error. Arithmetic carries the error to first order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bounded {
     pub(super) value: f64,
@@ -68,7 +68,7 @@ impl From<Estimate> for Bounded {
     }
 }
 
-/// Integrals from the first to the last of `ends`, with breakpoints at these and at a bell.
+/// Integrates from the first to the last of `ends`, with breakpoints at each of `ends` and around a bell.
 pub(super) fn integrals<const N: usize>(
     f: impl FnMut(f64) -> [f64; N],
     ends: &[f64],
@@ -87,7 +87,7 @@ pub(super) fn integrals<const N: usize>(
     })
 }
 
-/// The first of the least, the first of the largest and the geometric mean; no numbers if there are none.
+/// Least, largest and geometric mean of a collection, or NaN if it is empty. Among equals, the first counts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spread {
     pub(super) least: Bounded,
@@ -126,7 +126,7 @@ impl FromIterator<Bounded> for Spread {
     }
 }
 
-/// The first of the largest; no number if there is none.
+/// Returns the largest number, the first among equals, or NaN if there is none.
 pub(super) fn largest(all: impl IntoIterator<Item = Bounded>) -> Bounded {
     all.into_iter().collect::<Spread>().most
 }

@@ -1,4 +1,4 @@
-//! A and B as printed, without the half: samples off the sphere.
+//! Misprinted bounds A and B, without the factor of a half, which place samples off the sphere.
 
 use super::FoundCells;
 use super::bounded::{Bounded, Spread};
@@ -15,7 +15,7 @@ const STATEMENT: Statement = Statement {
     limits: "the lobe of the parameter grid that loses least",
 };
 
-/// The spread of closed forms; their error is the rounding of double precision.
+/// Collects the spread of closed forms, whose error is the rounding of double precision.
 fn spread(values: impl Iterator<Item = f64>) -> Spread {
     values
         .map(|value| Bounded {
@@ -25,7 +25,7 @@ fn spread(values: impl Iterator<Item = f64>) -> Spread {
         .collect()
 }
 
-/// The claim.
+/// Judges the printed bounds.
 pub(super) fn claim(cells: &FoundCells) -> Claim {
     let of_lobe = spread(
         longitudinal_grid()
@@ -33,7 +33,7 @@ pub(super) fn claim(cells: &FoundCells) -> Claim {
             .map(|lobe| 1.0 - lobe.printed_mass()),
     );
     let of_hair = spread(cells.iter().map(|(.., found)| found.lost));
-    // All that is drawn lands on the sphere with a density of the printed one over the share that does.
+    // Samples that land on the sphere have the printed density, divided by the share that lands there.
     let bias = spread(
         cells
             .iter()

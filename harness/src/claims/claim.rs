@@ -1,27 +1,28 @@
-//! Claims: words of the paper, figures, and the verdict that follows from the figures.
+//! Claims of the paper: quotations, figures, and the verdict that follows from the figures.
 
 use super::bounded::Bounded;
 use serde::Serialize;
 
-/// Standard errors that a sampled figure must keep from the threshold.
+/// Number of standard errors that a sampled figure must keep from the threshold.
 const ERRORS: f64 = 2.0;
 
 /// Origin of a figure, and the meaning of its error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Origin {
-    /// An integral in double precision; the error is a bound estimate.
+    /// Integral in double precision; the error is a bound estimate.
     Quadrature,
-    /// Random samples; the error is the standard error.
+    /// Mean of random samples; the error is the standard error.
     Sampled,
-    /// Times measured on this machine besides; the error is the standard error. It does not depend on the seed alone.
+    /// Combination of samples and of times measured on this machine; the error is the standard error. Depends on the machine as well as on
+    /// the seed.
     Timed,
-    /// Counted, without an error.
+    /// Number of cells that were counted, without an error.
     Counted,
 }
 
 impl Origin {
-    /// Name in tables.
+    /// Returns the name of the origin in tables.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Quadrature => "quadrature",
@@ -32,37 +33,37 @@ impl Origin {
     }
 }
 
-/// Role of a figure in the verdict.
+/// Role of a figure in the verdict on its claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Role {
-    /// The worst of all cases the claim is made for.
+    /// Worst of all cases that the claim is made for.
     Everywhere,
-    /// The worst of the cases within the limits of the [`Threshold`].
+    /// Worst of the cases within the limits of the [`Threshold`].
     WithinLimits,
-    /// Explains; does not decide.
+    /// Explanation that does not decide.
     Further,
 }
 
-/// A number with its error and its meaning.
+/// Number with its error and its meaning.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
-    /// Its meaning.
+    /// Meaning of the number, in words.
     pub name: String,
-    /// The number.
+    /// Value of the figure.
     pub value: f64,
-    /// Its standard error or, by quadrature, a bound estimate of its error; in the unit of the value.
+    /// Standard error or, by quadrature, a bound estimate of the error; in the unit of the value.
     pub error: f64,
-    /// Its unit; empty for ratios and shares.
+    /// Unit of value and error, empty for ratios and shares.
     pub unit: &'static str,
-    /// Its origin.
+    /// Origin of the number.
     pub origin: Origin,
-    /// Its role in the verdict.
+    /// Role of the figure in the verdict.
     pub role: Role,
 }
 
 impl Figure {
-    /// A figure that explains, without a unit.
+    /// Returns a figure without a unit that explains but does not decide.
     pub(super) fn new(name: impl Into<String>, origin: Origin, number: impl Into<Bounded>) -> Self {
         let Bounded { value, error } = number.into();
         Self {
@@ -75,14 +76,14 @@ impl Figure {
         }
     }
 
-    /// Figures by quadrature.
+    /// Returns one figure by quadrature for each named number.
     pub(super) fn integrals<const N: usize>(named: [(&str, Bounded); N]) -> Vec<Self> {
         named
             .map(|(name, number)| Self::new(name, Origin::Quadrature, number))
             .into()
     }
 
-    /// A number of cells.
+    /// Returns a figure that counts cells.
     pub(super) fn cells(name: &str, count: usize) -> Self {
         Self {
             unit: "cells",
@@ -90,7 +91,7 @@ impl Figure {
         }
     }
 
-    /// Bound on the distance of the true value from the figure.
+    /// Returns a bound on the distance of the true value from the figure.
     fn margin(&self) -> f64 {
         match self.origin {
             Origin::Sampled | Origin::Timed => ERRORS * self.error,
@@ -103,28 +104,28 @@ impl Figure {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
-    /// At most the bound.
+    /// Claim holds at the bound and below.
     AtMost,
-    /// At least the bound.
+    /// Claim holds at the bound and above.
     AtLeast,
 }
 
-/// Threshold for the figures of a claim.
+/// Threshold that the deciding figures of a claim must keep.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Threshold {
-    /// The bounded quantity.
+    /// Quantity that is bounded, in words.
     pub of: &'static str,
-    /// The side of it on which the claim holds.
+    /// Side of the bound on which the claim holds.
     pub side: Side,
-    /// The bound, in the unit of the figures with a [`Role`] in the verdict.
+    /// Bound, in the unit of the figures with a [`Role`] in the verdict.
     pub bound: f64,
-    /// Limits within which the second of those figures is the worst, in words.
+    /// Limits, in words, within which the second of those figures is the worst.
     pub limits: &'static str,
 }
 
 impl Threshold {
-    /// Whether a figure keeps it with its error to spare: two standard errors, or the error of the quadrature. What is
-    /// no number does not.
+    /// Returns true if a figure keeps the threshold with its error to spare: two standard errors, or the error of the quadrature. NaN does
+    /// not keep it.
     #[must_use]
     pub fn is_kept_by(&self, figure: &Figure) -> bool {
         match self.side {
@@ -134,22 +135,22 @@ impl Threshold {
     }
 }
 
-/// Verdict on a claim.
+/// Verdict on a claim, as its two deciding figures give it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Verdict {
-    /// The worst of all cases keeps the threshold.
+    /// Claim whose worst of all cases keeps the threshold.
     #[serde(rename = "holds")]
     Holds,
-    /// It does not, but the worst within the stated limits does.
+    /// Claim that fails somewhere, but whose worst case within the stated limits keeps the threshold.
     #[serde(rename = "holds within limits")]
     HoldsWithinLimits,
-    /// Neither does.
+    /// Claim of which neither figure keeps the threshold.
     #[serde(rename = "false")]
     False,
 }
 
 impl Verdict {
-    /// Name in tables and in JSON.
+    /// Returns the name of the verdict in tables and in JSON.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -160,13 +161,13 @@ impl Verdict {
     }
 }
 
-/// A claim to be judged: the words of the paper, and what decides.
+/// Claim to be judged: the words of the paper, and the threshold that decides.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Statement {
     pub(super) id: &'static str,
     pub(super) quotation: &'static str,
     pub(super) source: &'static str,
-    /// The bounded quantity.
+    /// Quantity that is bounded, in words.
     pub(super) of: &'static str,
     pub(super) side: Side,
     pub(super) bound: f64,
@@ -174,7 +175,7 @@ pub(super) struct Statement {
 }
 
 impl Statement {
-    /// The claim with the verdict that follows from its first two figures: the worst of all cases, and within the limits.
+    /// Returns the claim with the verdict that follows from its first two figures: the worst of all cases, and the worst within the limits.
     pub(super) fn judge(self, mut figures: Vec<Figure>, sentence: String) -> Claim {
         let Self {
             id,
@@ -219,22 +220,22 @@ impl Statement {
     }
 }
 
-/// A claim of the paper, and its verdict.
+/// Claim of the paper, with its figures and its verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claim {
     /// Name of the claim, for scripts.
     pub id: &'static str,
-    /// The words of the paper, or its formula.
+    /// Quotation from the paper, or its formula.
     pub quotation: &'static str,
-    /// The section they are in.
+    /// Section of the paper that the quotation is from.
     pub source: &'static str,
-    /// The worst of all cases, the worst within the limits of the threshold, and further figures.
+    /// Worst of all cases, worst within the limits of the threshold, and further figures.
     pub figures: Vec<Figure>,
-    /// The threshold of the first two.
+    /// Threshold of the first two figures.
     pub threshold: Threshold,
-    /// The verdict.
+    /// Verdict that follows from figures and threshold.
     pub verdict: Verdict,
-    /// Summary in a sentence.
+    /// Summary of the figures in a sentence.
     pub sentence: String,
 }
 

@@ -1,4 +1,4 @@
-//! The estimated energies: how far they are from the integrals they stand for.
+//! Estimated energies, and how far they are from the integrals that they stand for.
 
 use super::bounded::{Bounded, integrals, largest};
 use super::claim::{Claim, Figure, Origin, Side, Statement};
@@ -16,17 +16,17 @@ const STATEMENT: Statement = Statement {
     limits: "θ_o = 0°, β ≤ 10°, |α| ≤ 20°",
 };
 
-/// The claimed range, in degrees.
+/// Claimed range of widths and shifts, in degrees.
 const BETA: f64 = 30.0;
 const ALPHA: f64 = 20.0;
 
 /// Inclinations at which the claim is tested, in degrees.
 const THETA_O: [f64; 2] = [0.0, 75.0];
 
-/// Widest R, TT or TRT within the limits, in degrees.
+/// Widest R, TT or TRT lobe within the limits, in degrees.
 const NARROW: f64 = 10.0;
 
-/// Relative error of the integral of a Gaussian over the whole line in place of that over `interval`; all in degrees.
+/// Returns the relative error that comes from integrating a Gaussian over the whole line in place of `interval`; all arguments in degrees.
 fn error(alpha: f64, beta: f64, interval: [f64; 2]) -> Bounded {
     let [alpha, beta] = [alpha, beta].map(f64::to_radians);
     let [r] = integrals(
@@ -43,24 +43,24 @@ fn error(alpha: f64, beta: f64, interval: [f64; 2]) -> Bounded {
     .magnitude()
 }
 
-/// The largest error over the claimed shifts and the widths up to `beta`, in steps of half a degree.
+/// Returns the largest error over the claimed shifts and the widths up to `beta`, in steps of half a degree.
 fn worst(interval: [f64; 2], beta: f64) -> Bounded {
     largest(steps(beta).flat_map(|beta| shifts().map(move |alpha| error(alpha, beta, interval))))
 }
 
-/// Widths from half a degree to `most`, in degrees.
+/// Returns the widths from half a degree to `most`, in degrees.
 fn steps(most: f64) -> impl Iterator<Item = f64> {
     (1..)
         .map(|n| 0.5 * f64::from(n))
         .take_while(move |beta| *beta <= most)
 }
 
-/// Shifts over the claimed range, in degrees: the ends, where the error is largest, among them.
+/// Returns shifts over the claimed range, in degrees. They include its ends, where the error is largest.
 fn shifts() -> impl Iterator<Item = f64> {
     (-4..=4).map(|n| f64::from(n) * ALPHA / 4.0)
 }
 
-/// The widest lobe of which all narrower ones, shifted as claimed, are within 1%, in degrees; 0 if none is.
+/// Returns the largest width up to which every lobe, shifted as claimed, is within 1%, in degrees; 0 if none is.
 fn widest(interval: [f64; 2]) -> f64 {
     let kept =
         |beta: f64| shifts().all(|alpha| error(alpha, beta, interval).value < STATEMENT.bound);
@@ -70,7 +70,7 @@ fn widest(interval: [f64; 2]) -> f64 {
         .unwrap_or(0.0)
 }
 
-/// The claim.
+/// Judges the estimated energies.
 pub(super) fn claim() -> Claim {
     let real = THETA_O.map(|theta_o| theta_h_interval(theta_o.to_radians()));
     let seen = real.map(|interval| worst(interval, BETA));
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn errors_are_the_tails_of_the_normal_distribution() {
-        // One and two deviations either side of the centre: 31.73% and 4.55% lie beyond.
+        // One and two deviations on either side of the centre: 31.73% and 4.55% lie beyond.
         for (reach, beyond) in [
             (1.0_f64, 0.317_310_507_862_914),
             (2.0, 0.045_500_263_896_358),

@@ -1,4 +1,4 @@
-//! The glint's density: printed without an end, and its end at a right angle.
+//! Density of the glint: as printed, without an end, and as sampled, which ends at a right angle.
 
 use super::FoundCells;
 use super::bounded::{Bounded, Spread, integrals, largest};
@@ -34,7 +34,7 @@ const INTERVAL: Statement = Statement {
 /// Distances from `|phi| = pi` at which the second moment is cut off, rad.
 const GAPS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 
-/// Every pair of widths and half angles of the grid's glints, of the stronger kind, without R and, unless `tt`, without TT.
+/// Returns the grid's glints of the stronger kind, one per pair of widths and half angles, without R and, unless `tt`, without TT.
 fn glints(tt: bool) -> Result<Vec<HairParams>, ParamError> {
     let base = *HairParams::bright().desc();
     let (grid, none) = (Grid::FULL, [0.0; 3]);
@@ -55,7 +55,7 @@ fn glints(tt: bool) -> Result<Vec<HairParams>, ParamError> {
         .collect()
 }
 
-/// Total of the printed density, less 1.
+/// Returns the total of the printed density, less 1.
 fn excess(params: &HairParams) -> Bounded {
     let HairDesc { phi_g, gamma_g, .. } = params.desc().map(f64::from);
     let printed = |phi: f64| [2.0 * errata::glint(phi_g, gamma_g, phi)];
@@ -63,7 +63,7 @@ fn excess(params: &HairParams) -> Bounded {
     total.plus(-1.0)
 }
 
-/// The printed density.
+/// Judges the printed density.
 pub(super) fn density(cells: &FoundCells) -> Result<Claim, ParamError> {
     let Spread { most, least, .. } = glints(false)?.iter().map(excess).collect();
     let bias: Spread = cells
@@ -92,7 +92,7 @@ pub(super) fn density(cells: &FoundCells) -> Result<Claim, ParamError> {
     Ok(DENSITY.judge(figures, sentence))
 }
 
-/// V with azimuths up to `gap` from pi, of the published sampler and with glints drawn from [0, pi].
+/// Returns V over azimuths up to `gap` from pi: of the published sampler, and with glints drawn from [0, pi].
 fn up_to(hair: &Hair, gap: f64) -> [Bounded; 2] {
     let decades = (1..).map(|k| 10.0_f64.powi(-k)).take_while(|x| *x > gap);
     let ends: Vec<f64> = [0.0]
@@ -103,12 +103,12 @@ fn up_to(hair: &Hair, gap: f64) -> [Bounded; 2] {
     hair.second_moments(&ends).map(|of| of.plus(-1.0))
 }
 
-/// Contribution to V of azimuths from `10 gap` to `gap` away from pi.
+/// Returns the contribution to V of azimuths from `10 gap` to `gap` away from pi.
 fn decade(hair: &Hair, gap: f64) -> [Bounded; 2] {
     hair.second_moments(&[PI - 10.0 * gap, PI - gap])
 }
 
-/// The end at a right angle.
+/// Judges the end of the glint's samples at a right angle.
 pub(super) fn interval(cells: &FoundCells) -> Result<Claim, ParamError> {
     let (alone, with_tt) = (glints(false)?, glints(true)?);
     let last = GAPS[GAPS.len() - 1];
@@ -150,7 +150,7 @@ pub(super) fn interval(cells: &FoundCells) -> Result<Claim, ParamError> {
             both(&alone, 1),
         ),
     ]);
-    // The glints that leave most of themselves behind: the widest, furthest from the viewer.
+    // The widest glints, furthest from the viewer, leave the most of themselves beyond the right angle.
     let widest = Hair::new(ModelKind::Cauchy, &alone[alone.len() - 1], 0.0);
     let at = "γ_g = 20°, φ_g = 45°, I_g = 5, Cauchy";
     let mut add =

@@ -1,4 +1,4 @@
-//! The discard of samples at grazing angles: the energy within 1e-5 rad of the fibre's axis, over the whole.
+//! Discard of samples at grazing angles: the share of the energy within 1e-5 rad of the fibre's axis.
 
 use super::bounded::{Bounded, integrals, largest};
 use super::claim::{Claim, Figure, Side, Statement};
@@ -10,7 +10,7 @@ use hairis::params::HairDesc;
 use hairis::{HairParams, Lobe, ParamError};
 use hairis_reference::{HairReference, Reference, Shape};
 
-/// The bound is a hundredth of an error of 1%.
+/// Statement whose bound is a hundredth of an error of 1%.
 const STATEMENT: Statement = Statement {
     id: "grazing-discard",
     quotation: "Although in theory this may bias the result when the gaussian is wide, in practice this is not a problem \
@@ -22,10 +22,10 @@ const STATEMENT: Statement = Statement {
     limits: "the parameter grid",
 };
 
-/// Angle from the axis within which samples are discarded, rad.
+/// Angle to the axis within which samples are discarded, rad.
 const CAP: f64 = 1e-5;
 
-/// Widths of the lobe that points at the axis, rad: the least that is accepted, then 0.1, 0.5, 2.5, 10 and 60 degrees.
+/// Widths of the lobe that points at the axis, rad: the least accepted width, then 0.1, 0.5, 2.5, 10 and 60 degrees.
 const BETA: [f64; 6] = [
     1e-4,
     0.1 * PI / 180.0,
@@ -36,7 +36,7 @@ const BETA: [f64; 6] = [
 ];
 
 impl Longitudinal {
-    /// `M cos^2 theta_i / cos^2 theta_d` at `delta` from the end `sign` of the axis. The reference is 0 within the cap.
+    /// Returns `M cos^2 theta_i / cos^2 theta_d` at `delta` from the end `sign` of the axis. The reference returns 0 within the cap.
     fn energy_at(&self, shape: Shape, sign: f64, delta: f64) -> f64 {
         let theta_i = sign * (FRAC_PI_2 - delta);
         let m = shape.bell(self.beta, 0.5 * (theta_i + self.theta_o) - self.alpha);
@@ -44,7 +44,7 @@ impl Longitudinal {
         m * ratio * ratio
     }
 
-    /// Its energy within `reach` of both ends of the axis.
+    /// Returns the energy of the lobe within `reach` of both ends of the axis.
     fn energy(&self, shape: Shape, reach: f64) -> Bounded {
         let at_end = |sign: f64| {
             let centre = FRAC_PI_2 - sign * (2.0 * self.alpha - self.theta_o);
@@ -58,13 +58,13 @@ impl Longitudinal {
         [-1.0, 1.0].into_iter().flat_map(at_end).sum()
     }
 
-    /// The share of its energy that is discarded.
+    /// Returns the share of the lobe's energy that is discarded.
     fn discarded(&self, shape: Shape) -> Bounded {
         self.energy(shape, CAP).over(self.energy(shape, FRAC_PI_2))
     }
 }
 
-/// Mean intensity times azimuthal integral of R, TT and of TRT with its glints.
+/// Returns, for R, TT and TRT with its glints, the mean intensity times the azimuthal integral.
 fn areas(shape: Shape, p: &HairDesc<f64>) -> [f64; 3] {
     let mean = |rgb: [f64; 3]| rgb.iter().sum::<f64>() / 3.0;
     let area = |centre: f64, width: f64| {
@@ -84,7 +84,7 @@ fn areas(shape: Shape, p: &HairDesc<f64>) -> [f64; 3] {
     ]
 }
 
-/// The share of the energy of a hair that is discarded.
+/// Returns the share of a hair's energy that is discarded.
 fn share_of(shape: Shape, params: &HairParams, theta_o: f64) -> Bounded {
     let p = params.desc().map(f64::from);
     let areas = areas(shape, &p);
@@ -97,7 +97,7 @@ fn share_of(shape: Shape, params: &HairParams, theta_o: f64) -> Bounded {
     energy(CAP).over(energy(FRAC_PI_2))
 }
 
-/// The share of the samples of a hair that are discarded.
+/// Returns the share of a hair's samples that are discarded.
 fn discarded(params: &HairParams, theta_o: f64) -> f64 {
     let wo = [theta_o.sin(), theta_o.cos(), 0.0];
     let hair = HairReference::prepare(&params.desc().map(f64::from), Shape::Gaussian, wo);
@@ -111,8 +111,8 @@ fn discarded(params: &HairParams, theta_o: f64) -> f64 {
         .sum()
 }
 
-/// The share that is discarded of a lobe of width `beta` with its peak on the axis, opposite to a viewer at `theta_o` above the
-/// normal plane.
+/// Returns the discarded share of a lobe of width `beta` with its peak on the axis, opposite to a viewer at `theta_o` above the normal
+/// plane.
 fn pointed(shape: Shape, beta: f64, theta_o: f64) -> Bounded {
     Longitudinal {
         alpha: 0.5 * (theta_o - FRAC_PI_2),
@@ -122,7 +122,7 @@ fn pointed(shape: Shape, beta: f64, theta_o: f64) -> Bounded {
     .discarded(shape)
 }
 
-/// The claim.
+/// Judges the discard of samples at grazing angles.
 pub(super) fn claim() -> Result<Claim, ParamError> {
     let mut cells = Vec::new();
     for index in 0..Grid::FULL.len() {
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn a_narrow_lobe_loses_the_cube_of_the_cap() {
-        // Integral of x^2 exp(-x^2 / 2 s^2) over [0, e], over that on the half line, for e far below s: (e/s)^3 / 3 / sqrt(pi/2).
+        // Integral of x^2 exp(-x^2 / 2 s^2) over [0, e], divided by that over the half line, for e far below s: (e/s)^3 / 3 / sqrt(pi/2).
         let beta = 2e-3;
         let want = (CAP / (2.0 * beta)).powi(3) / 3.0 / FRAC_PI_2.sqrt();
         let got = pointed(Shape::Gaussian, beta, 0.0);

@@ -1,4 +1,4 @@
-//! One hair seen from one direction, by quadrature over the oracle: the published density beside the misprinted ones.
+//! Hair seen from one direction, by quadrature over the oracle: the published density beside the misprinted ones.
 
 use super::bounded::Bounded;
 use crate::efficiency::with_beta;
@@ -11,12 +11,12 @@ use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::quadrature::{Tolerance, bell_breakpoints, integrate_rectangle};
 use hairis_reference::{CauchyDensity, HairReference, Reference, errata};
 
-/// The interval of `theta_h` as `theta_i` runs over all inclinations, rad.
+/// Returns the interval of `theta_h` as `theta_i` runs over all inclinations, rad.
 pub(super) fn theta_h_interval(theta_o: f64) -> [f64; 2] {
     [-FRAC_PI_2, FRAC_PI_2].map(|end| 0.5 * (theta_o + end))
 }
 
-/// A lobe's factor M, seen from an inclination; in rad.
+/// Longitudinal factor M of a lobe, seen from an inclination; in rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Longitudinal {
     pub(super) alpha: f64,
@@ -25,7 +25,7 @@ pub(super) struct Longitudinal {
 }
 
 impl Longitudinal {
-    /// The longitudinal term of R, TT or TRT, by slot.
+    /// Returns the longitudinal term of R, TT or TRT, selected by slot.
     pub(super) fn of(p: &HairDesc<f64>, lobe: usize, theta_o: f64) -> Self {
         Self {
             alpha: p.alpha[lobe],
@@ -34,8 +34,8 @@ impl Longitudinal {
         }
     }
 
-    /// The share of the printed sampler's `theta_i` that are inclinations. As printed, without the half, A and B normalise the
-    /// density on an interval twice as long as that of `theta_h`.
+    /// Returns the share of the printed sampler's `theta_i` that are valid inclinations. As printed, without the factor of a half, A and B
+    /// normalise the density on an interval twice as long as that of `theta_h`.
     pub(super) fn printed_mass(&self) -> f64 {
         let Self {
             alpha,
@@ -48,7 +48,7 @@ impl Longitudinal {
     }
 }
 
-/// Every M of the parameter grid: three lobes of each width of R, from each inclination.
+/// Returns every factor M of the parameter grid: three lobes for each width of R, from each inclination.
 pub(super) fn longitudinal_grid() -> Vec<Longitudinal> {
     let widths = Grid::FULL
         .beta_r_deg
@@ -65,12 +65,12 @@ pub(super) fn longitudinal_grid() -> Vec<Longitudinal> {
     widths.flat_map(of_width).collect()
 }
 
-/// A glint's density of `|phi|` on [0, pi]; as printed, without an end, it is this over its cdf at a right angle.
+/// Returns a glint's density of `|phi|` on [0, pi]. The printed density, which has no end, is this density over its cdf at a right angle.
 fn whole_glint(p: &HairDesc<f64>) -> CauchyDensity<f64> {
     CauchyDensity::new(p.phi_g, p.gamma_g, 0.0, PI)
 }
 
-/// Sum over the lobes, each weighted by its share of the samples.
+/// Returns the sum over the lobes, each weighted by its share of the samples.
 fn mixture(shares: &PerLobe<f64>, of: &PerLobe<f64>) -> f64 {
     Lobe::ALL
         .into_iter()
@@ -78,32 +78,32 @@ fn mixture(shares: &PerLobe<f64>, of: &PerLobe<f64>) -> f64 {
         .sum()
 }
 
-/// A hair of a model seen from an inclination.
+/// Hair of a model, seen from an inclination.
 pub(super) struct Hair {
     parameters: HairDesc<f64>,
     oracle: HairReference<f64>,
     theta_o: f64,
 }
 
-/// Figures of a hair, all under constant light and of the mean of RGB.
+/// Figures of a hair, all under constant light and for the mean of RGB.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HairFigures {
-    /// V of uniform directions.
+    /// V of uniform sampling.
     pub(super) uniform: Bounded,
     /// V of the published sampler.
     pub(super) published: Bounded,
-    /// V of the published sampler with the printed A and B, where samples off the sphere count and contribute nothing.
+    /// V of the published sampler with the printed A and B. Samples off the sphere count, and contribute nothing.
     pub(super) printed: Bounded,
     /// V of the published sampler with glints drawn from [0, pi].
     pub(super) whole: Bounded,
-    /// Relative bias of an estimator that draws as published and divides by the density whose glint does not end.
+    /// Relative bias of an estimator that draws as published and divides by the density whose glint has no end.
     pub(super) uncut_bias: Bounded,
     /// Share of the samples that the printed A and B lose.
     pub(super) lost: f64,
 }
 
 impl HairFigures {
-    /// All of its numbers.
+    /// Returns all numbers of the figures, for the journal.
     pub(super) fn numbers(&self) -> [f64; 11] {
         let Self {
             uniform,
@@ -121,7 +121,7 @@ impl HairFigures {
         numbers
     }
 
-    /// From its numbers.
+    /// Restores figures from their numbers.
     pub(super) fn from_numbers(numbers: [f64; 11]) -> Self {
         let of = |place: usize| Bounded {
             value: numbers[place],
@@ -149,15 +149,15 @@ impl Hair {
         }
     }
 
-    /// Shares of the lobes' samples that the printed A and B leave on the sphere.
+    /// Returns, per lobe, the share of the samples that the printed A and B leave on the sphere.
     fn masses(&self) -> PerLobe<f64> {
         let [r, tt, trt] = [0, 1, 2]
             .map(|lobe| Longitudinal::of(&self.parameters, lobe, self.theta_o).printed_mass());
         PerLobe::padded([r, tt, trt, trt], 0.0)
     }
 
-    /// Integrals, by index: y, the mean of RGB of `S cos theta_i`; its square over each density; and y times the
-    /// published density over the one whose glint does not end.
+    /// Returns integrals, by index: y, the mean of RGB of `S cos theta_i`; its square over each density; and y times the ratio of the
+    /// published density to the one whose glint has no end.
     fn integrals(&self, phi: &[f64]) -> [Bounded; 6] {
         let (masses, shares) = (self.masses(), self.oracle.probabilities());
         let mut kept = shares;
@@ -198,14 +198,14 @@ impl Hair {
             phi,
             &Tolerance::relative(1e-6),
         );
-        // Half the sphere: hair is the same for phi and -phi.
+        // Half of the sphere suffices, because hair is the same for phi and -phi.
         core::array::from_fn(|k| Bounded {
             value: 2.0 * r.value[k],
             error: 2.0 * r.error[k],
         })
     }
 
-    /// All that is found of it.
+    /// Computes all figures of the hair.
     pub(super) fn found(&self) -> HairFigures {
         let all = self.integrals(&self.phi_breakpoints());
         let mean = all[0];
@@ -220,8 +220,8 @@ impl Hair {
         }
     }
 
-    /// Contribution of azimuths between `ends`, in [0, pi], to `E[y^2] / E[y]^2`: of the published sampler, and with glints drawn
-    /// from [0, pi].
+    /// Returns the contribution of azimuths between `ends`, in [0, pi], to `E[y^2] / E[y]^2`: for the published sampler, and with glints
+    /// drawn from [0, pi].
     pub(super) fn second_moments(&self, ends: &[f64]) -> [Bounded; 2] {
         let whole = self.phi_breakpoints();
         let mean = self.integrals(&whole)[0];
@@ -232,7 +232,7 @@ impl Hair {
         [2, 4].map(|k| all[k].over(mean.times(mean)))
     }
 
-    /// Ends of panels in `theta_i` that announce every bell.
+    /// Returns ends of panels in `theta_i`, which announce every bell to the quadrature.
     fn theta_breakpoints(&self) -> Vec<f64> {
         let p = &self.parameters;
         let mut theta = vec![-FRAC_PI_2, 0.0, FRAC_PI_2];
@@ -243,7 +243,7 @@ impl Hair {
         theta
     }
 
-    /// Ends of panels in `phi` that do.
+    /// Returns ends of panels in `phi`, which announce every bell to the quadrature.
     fn phi_breakpoints(&self) -> Vec<f64> {
         let p = &self.parameters;
         let mut phi = vec![0.0, FRAC_PI_2, PI];
@@ -288,7 +288,7 @@ mod tests {
 
     #[test]
     fn a_lobe_alone_loses_what_its_mass_says() {
-        // With one lobe the printed density is the right one times its mass: the second moment grows by its inverse.
+        // With one lobe, the printed density is the correct one times its mass, so the second moment grows by the inverse of the mass.
         let mut desc = *HairParams::bright().desc();
         (desc.i_tt, desc.i_trt) = ([0.0; 3], [0.0; 3]);
         let params = HairParams::new(&desc).expect("accepted");

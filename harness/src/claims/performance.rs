@@ -1,4 +1,4 @@
-//! The all-Cauchy model against the Gaussian one, each under the published sampler: the study's machinery, light by light.
+//! All-Cauchy model against the Gaussian one, each under the published sampler, light by light, measured as the study measures.
 
 use super::claim::{Claim, Figure, Origin, Side, Statement};
 use crate::journal::Journal;
@@ -13,18 +13,18 @@ use hairis_instruments::progress::Progress;
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::number;
 
-/// A light of the claims.
+/// Light that a claim is made for.
 #[derive(Clone, Copy)]
 pub(super) struct ClaimedLight {
-    /// Name of the light.
+    /// Name of the light in the study.
     name: &'static str,
-    /// Name of the claim.
+    /// Name of the claim, for scripts.
     id: &'static str,
-    /// The light in sentences.
+    /// Name of the light in sentences.
     pub(super) words: &'static str,
 }
 
-/// The lights of the claims, in the order of reports; others have no part in them.
+/// Lights of the claims, in the order of reports. Other lights have no claim.
 pub(super) const LIGHTS: [ClaimedLight; 5] = [
     ClaimedLight {
         name: Constant::NAME,
@@ -53,7 +53,7 @@ pub(super) const LIGHTS: [ClaimedLight; 5] = [
     },
 ];
 
-/// The claim under one light.
+/// Statement for one light. Each light fills in its own `id`.
 const STATEMENT: Statement = Statement {
     id: "",
     quotation: "This new bsdf model introduces some very minor visual differences, but it is able to achieve a \
@@ -72,16 +72,16 @@ const IN_EQUAL_TIME: Statement = Statement {
     ..STATEMENT
 };
 
-/// Samples of a shading point over which its set-up is spread in the comparison of times.
+/// Samples of a shading point that share its set-up in the comparison of times.
 const PER_POINT: usize = 16;
 
 /// V on both models in a cell, under each of [`LIGHTS`].
 type Pairs = [[Estimate; 2]; LIGHTS.len()];
 
-/// Numbers of a cell in the journal: of each model, light by light, V and its error.
+/// Count of a cell's numbers in the journal: for each model and light, V and its error.
 const NUMBERS: usize = 2 * 2 * LIGHTS.len();
 
-/// Measures every cell.
+/// Measures V in every cell, unless the journal has it.
 fn measure(
     plan: &Plan<'_>,
     journal: &Journal,
@@ -117,7 +117,7 @@ fn measure(
     progress.map(&cells, pairs).into_iter().collect()
 }
 
-/// The claims: one per light, then one of all lights in equal time.
+/// Judges the claims: one per light, then one for all lights in equal time.
 pub(super) fn claims(
     plan: &Plan<'_>,
     journal: &Journal,
@@ -128,7 +128,7 @@ pub(super) fn claims(
     Ok(claims)
 }
 
-/// The claims under each light, and the geometric means of their ratios.
+/// Judges the claims under each light, and returns the geometric means of their ratios as well.
 pub(super) fn by_light(
     plan: &Plan<'_>,
     journal: &Journal,
@@ -184,7 +184,7 @@ pub(super) fn by_light(
     Ok((claims, means))
 }
 
-/// The claim in equal time.
+/// Judges the claim in equal time.
 fn in_time(plan: &Plan<'_>, means: &[Estimate]) -> Claim {
     let times = Times::measure(plan.seed, plan.quick, None);
     let [gaussian, cauchy] =

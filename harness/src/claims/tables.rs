@@ -1,10 +1,10 @@
-//! The claims as tables: one each, then all of them with their verdicts.
+//! Tables of the claims: one for each claim, then one of all claims with their verdicts.
 
 use super::Claims;
 use super::claim::{Claim, Figure, Origin, Role, Side, Threshold};
 use hairis_instruments::table::{Table, number};
 
-/// The tables.
+/// Returns one table per claim, then the summary with all verdicts.
 #[must_use]
 pub fn tables(of: &Claims) -> Vec<Table> {
     of.claims
@@ -45,7 +45,7 @@ fn of_claim(claim: &Claim) -> Table {
         .note(format!("{}: {}", claim.verdict.name(), claim.sentence))
 }
 
-/// The bound in words.
+/// Returns the bound in words.
 fn bound(claim: &Claim) -> String {
     let Threshold { side, bound, .. } = claim.threshold;
     let side = match side {
@@ -55,7 +55,7 @@ fn bound(claim: &Claim) -> String {
     format!("{side} {}", number::plain(bound, 1))
 }
 
-/// Value and error.
+/// Returns value and error of a figure, rounded for tables.
 fn shown(figure: &Figure) -> [String; 2] {
     match figure.origin {
         Origin::Counted => [format!("{}", figure.value), String::new()],

@@ -1,4 +1,4 @@
-//! Wider tails: the cost of sampling a Gaussian factor by a Cauchy distribution of the same width.
+//! Wider tails: the cost of sampling a Gaussian factor from a Cauchy distribution of the same width.
 
 use super::bounded::{Bounded, Spread, integrals};
 use super::claim::{Claim, Figure, Side, Statement};
@@ -17,11 +17,10 @@ const STATEMENT: Statement = Statement {
     limits: "the longitudinal factor of the parameter grid that suffers least",
 };
 
-/// Half the width of the line that stands for the infinite one, in widths: beyond it no double precision is left of a
-/// Gaussian.
+/// Half the length, in widths, of the interval that stands for the infinite line. A Gaussian beyond it is below double precision.
 const REACH: f64 = 40.0;
 
-/// `(integral of c) (integral of g^2 / c) / (integral of g)^2 - 1` over an interval, for bells of one width and centre.
+/// Returns `(integral of c) (integral of g^2 / c) / (integral of g)^2 - 1` over an interval, for bells of one width and centre.
 fn added(alpha: f64, beta: f64, interval: [f64; 2], cauchy_area: Option<f64>) -> Bounded {
     let integrand = |x: f64| {
         let [g, c] = [Shape::Gaussian, Shape::Cauchy].map(|shape| shape.bell(beta, x - alpha));
@@ -34,7 +33,7 @@ fn added(alpha: f64, beta: f64, interval: [f64; 2], cauchy_area: Option<f64>) ->
         .plus(-1.0)
 }
 
-/// The largest Gaussian over Cauchy, both of peak 1.
+/// Returns the largest ratio of a Gaussian to a Cauchy, both of peak 1.
 fn largest_weight() -> f64 {
     let weight = |x: f64| Shape::Gaussian.bell(1.0, x) / Shape::Cauchy.bell(1.0, x);
     (0..=8_000)
@@ -42,7 +41,7 @@ fn largest_weight() -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The claim.
+/// Judges the claim about wider tails.
 pub(super) fn claim() -> Claim {
     let of_lobe = |l: Longitudinal| added(l.alpha, l.beta, theta_h_interval(l.theta_o), None);
     let Spread { most, least, .. } = longitudinal_grid().into_iter().map(of_lobe).collect();

@@ -1,4 +1,4 @@
-//! Importance sampling against uniform sampling, over the parameter grid.
+//! Importance sampling compared with uniform sampling, over the parameter grid.
 
 use super::bounded::{Bounded, Spread, largest};
 use super::claim::{Claim, Figure, Origin, Side, Statement};
@@ -23,16 +23,16 @@ const STATEMENT: Statement = Statement {
     limits: "β_R ≤ 10°",
 };
 
-/// Widest R within the limits, in degrees.
+/// Widest R lobe within the limits, in degrees.
 const NARROW: f32 = 10.0;
 
-/// The example: rough hair with wide glints, all else as in the default hair.
+/// Returns the cell of the example: rough hair with wide glints, and all else as in the default hair.
 pub(super) fn example() -> Cell {
     let is = |cell: &Cell| cell.values() == [20.0, 45.0, 20.0, 35.0, 0.5, 0.0];
     Grid::FULL.cells().find(is).expect("a cell of the grid")
 }
 
-/// V of uniform sampling and of the published sampler on the example, Gaussian model, from samples.
+/// Measures V of uniform sampling and of the published sampler on the example with the Gaussian model, from samples.
 pub(super) fn measured(
     plan: &Plan<'_>,
     cell: &Cell,
@@ -62,7 +62,7 @@ pub(super) fn measured(
     Ok([of(Sampler::Uniform)?, of(Sampler::Published)?])
 }
 
-/// The claim.
+/// Judges importance sampling against uniform sampling.
 pub(super) fn claim(
     plan: &Plan<'_>,
     cells: &FoundCells,

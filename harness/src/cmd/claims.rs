@@ -11,12 +11,12 @@ use hairis_instruments::program::say;
 use hairis_instruments::progress::{share_bar, show_share};
 use std::fs;
 
-/// Computes the claims. Continues an interrupted run.
+/// Computes the claims of the paper, prints their tables and writes `claims.json`. Continues an interrupted run.
 ///
 /// # Errors
 ///
-/// [`Error::Output`] before any work is done, if the folder cannot be written;
-/// [`Error::Interrupted`] after a signal. A false claim is no error.
+/// Returns [`Error::Output`] before any work is done, if the folder cannot be written, and [`Error::Interrupted`] after a signal. A false
+/// claim is not an error.
 pub fn run(flags: &Claims) -> Result<(), Error> {
     fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
     let path = flags.out.join("claims.json");

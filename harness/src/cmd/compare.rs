@@ -12,12 +12,12 @@ use hairis_instruments::progress::{share_bar, show_share};
 use hairis_instruments::report::Report;
 use std::fs;
 
-/// Runs the comparison.
+/// Runs the comparison, writes its files and prints its tables.
 ///
 /// # Errors
 ///
-/// [`Error::Environment`] and [`Error::Output`] before any work is done, if a file cannot be read or the folder cannot
-/// be written; [`Error::Failed`] at the end, with all files written, if a check failed.
+/// Returns [`Error::Environment`] or [`Error::Output`] before any work is done, if a file cannot be read or the folder cannot be written.
+/// Returns [`Error::Failed`] at the end, with all files written, if a check failed.
 pub fn run(flags: &Compare) -> Result<(), Error> {
     let (environment, name) = environment(flags.env.as_deref(), flags.layer.as_deref())?;
     let materials = materials::of_flags(&flags.model, &flags.material)?;

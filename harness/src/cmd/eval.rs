@@ -1,9 +1,8 @@
-//! `hairis eval`: JSON Lines in, JSON Lines out.
+//! `hairis eval`: reads JSON Lines and writes JSON Lines.
 //!
-//! One line is written for each line read, in order. Lines are answered in blocks as long as the chosen path takes
-//! them, in constant memory however long the input is. A block ends early where the input has no more line ready, so
-//! that a program that writes a line and waits for its answer gets it; lanes are independent, so answers do not
-//! depend on that.
+//! One line is written for each line read, in order. Lines are answered in blocks as long as the chosen path takes them, in constant memory
+//! however long the input is. If the input has no further line ready, a block ends early, so that a program that writes a line and waits
+//! for its answer gets it. Answers do not depend on the blocks, because lanes are independent.
 
 mod answer;
 mod lines;
@@ -18,25 +17,25 @@ use std::io::{self, BufReader, BufWriter, ErrorKind, Read, Write};
 
 const BUFFER: usize = 1 << 16;
 
-/// Answers standard input on standard output.
+/// Answers the requests of standard input on standard output.
 ///
-/// A reader that leaves early ends the run without an error of its own.
+/// If the reader of standard output leaves early, the run ends without an error of its own.
 ///
 /// # Errors
 ///
-/// - [`Error::Malformed`] if any line was refused, after all others were answered.
-/// - [`Error::Read`] and [`Error::Write`] if a stream failed.
+/// - [`Error::Malformed`] if any line was rejected, after all others were answered.
+/// - [`Error::Read`] or [`Error::Write`] if a stream failed.
 pub fn run(flags: &Eval) -> Result<(), Error> {
     let input = BufReader::with_capacity(BUFFER, io::stdin().lock());
     let output = BufWriter::with_capacity(BUFFER, io::stdout().lock());
     stream(flags.path, input, output)
 }
 
-/// Answers `input` on `output`: see [`run`].
+/// Answers the requests of `input` on `output`, as [`run`] does for the standard streams.
 ///
 /// # Errors
 ///
-/// As [`run`].
+/// Returns the errors of [`run`].
 pub fn stream<R: Read, W: Write>(
     path: CodePath,
     input: BufReader<R>,
@@ -77,7 +76,7 @@ pub fn stream<R: Read, W: Write>(
     }
 }
 
-/// Reads up to `len` lines, fewer where no more are ready; false at the end of the input.
+/// Reads up to `len` lines, or fewer if no more are ready. Returns false at the end of the input.
 fn fill<R: Read>(
     block: &mut Vec<Result<Request, String>>,
     len: usize,

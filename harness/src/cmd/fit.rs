@@ -1,4 +1,4 @@
-//! `hairis fit`: the parameters of a model whose look is nearest to that of another, with its residuals as plots.
+//! `hairis fit`: finds the parameters of a model whose look is nearest to that of another, and plots the residuals.
 
 use super::print_tables;
 use crate::args::{Fit, FitNorm, FitOver};
@@ -22,8 +22,8 @@ use std::fs;
 ///
 /// # Errors
 ///
-/// [`Error::Usage`] if there is no such model, preset, material or field; [`Error::Output`] before any work is done, if the folder
-/// cannot be written.
+/// Returns [`Error::Usage`] if there is no such model, preset, material or field, and [`Error::Output`] before any work is done, if the
+/// folder cannot be written.
 pub fn run(flags: &Fit) -> Result<(), Error> {
     if let Some(over) = flags.over {
         return run_over(flags, over);
@@ -110,7 +110,7 @@ pub fn run(flags: &Fit) -> Result<(), Error> {
     print(format!("{fitted}\n"))
 }
 
-/// Fits to many looks: writes their rows, and prints a table.
+/// Fits to many looks, writes their rows, and prints a table.
 fn run_over(flags: &Fit, over: FitOver) -> Result<(), Error> {
     let from = find_model("--from", flags.from.as_deref().unwrap_or_default())?;
     let to = find_model("--to", &flags.to)?;
@@ -167,7 +167,7 @@ fn run_over(flags: &Fit, over: FitOver) -> Result<(), Error> {
     Ok(())
 }
 
-/// The material that is fitted to.
+/// Returns the material that is fitted to.
 fn source(flags: &Fit) -> Result<NamedMaterial, Error> {
     if let Some(path) = &flags.material {
         let mut all = materials::of_flags(&[], core::slice::from_ref(path))?;
@@ -199,7 +199,7 @@ fn source(flags: &Fit) -> Result<NamedMaterial, Error> {
     })
 }
 
-/// Refuses fixed fields of which the start has another one in their place.
+/// Rejects fixed fields for which the start has another field in their place.
 fn refuse_replaced(config: &FitConfig, start: &Values) -> Result<(), Error> {
     let is_fixed = |field: &&Field| config.fixed.iter().any(|name| name == field.name);
     for field in start.fields().iter().filter(is_fixed) {
@@ -215,7 +215,7 @@ fn refuse_replaced(config: &FitConfig, start: &Values) -> Result<(), Error> {
     Ok(())
 }
 
-/// Settings of the flags.
+/// Converts the flags to the settings of a fit, and checks them.
 fn config(flags: &Fit, to: ModelId) -> Result<FitConfig, Error> {
     let names: Vec<&str> = to.fields().iter().map(|field| field.name).collect();
     if let Some(name) = flags

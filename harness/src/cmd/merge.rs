@@ -1,4 +1,4 @@
-//! `hairis merge`: joins the parts of a study.
+//! `hairis merge`: joins the parts of a study that ran in shards.
 
 use super::environment;
 use super::study::{check_outputs, finish};
@@ -9,15 +9,15 @@ use hairis_instruments::interrupt::Interrupt;
 use hairis_instruments::program::say;
 use std::fs;
 
-/// Joins them, writes the same tables as one run, and prints the summary.
+/// Joins the parts, writes the same tables as one run, and prints the summary.
 ///
-/// The rows need no environment; the times, which are measured here, need it for its look-up. The parts contain its digest.
+/// The rows need no environment. The times, which are measured here, need it for the time of its look-up. The parts contain its digest.
 ///
 /// # Errors
 ///
-/// [`Error::Part`] and [`Error::Missing`] if the parts are not those of one study, all of them; [`Error::Environment`] and
-/// [`Error::Usage`] if the environment cannot be read or is not theirs; [`Error::Output`] before any work is done, if the
-/// folder cannot be written; [`Error::Failed`] at the end, with all files written, if a check failed.
+/// Returns [`Error::Part`] or [`Error::Missing`] if the parts are not all the parts of one study, and [`Error::Environment`] or
+/// [`Error::Usage`] if the environment cannot be read or is not that of the parts. Returns [`Error::Output`] before any work is done, if
+/// the folder cannot be written, and [`Error::Failed`] at the end, with all files written, if a check failed.
 pub fn run(flags: &Merge) -> Result<(), Error> {
     let study = Study::read(&flags.parts)?;
     let (environment, name) = environment(flags.env.as_deref(), flags.layer.as_deref())?;

@@ -1,4 +1,4 @@
-//! `hairis shader`: a model as source of another language.
+//! `hairis shader`: prints a model as source of another language.
 
 mod folder;
 
@@ -13,11 +13,11 @@ use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
 use std::fs;
 use std::path::Path;
 
-/// Prints the model on standard output, or models into a folder.
+/// Prints one model on standard output, or writes models into a folder.
 ///
 /// # Errors
 ///
-/// [`Error::Usage`] if there is no such model, field or material, [`Error::Write`] or [`Error::Output`] if the output fails.
+/// Returns [`Error::Usage`] if there is no such model, field or material, and [`Error::Write`] or [`Error::Output`] if the output fails.
 pub fn run(flags: &Shader) -> Result<(), Error> {
     let materials = flags.material.as_deref().map_or(Ok(Vec::new()), read)?;
     if let Some(dir) = &flags.out {
@@ -35,7 +35,7 @@ pub fn run(flags: &Shader) -> Result<(), Error> {
     print(text)
 }
 
-/// Materials of a file, by name.
+/// Reads the materials of a file, each with the name of its function.
 fn read(file: &Path) -> Result<Vec<(String, MaterialSpec)>, Error> {
     let refuse =
         |problem: String| Error::Usage(format!("--material {}: {problem}", file.display()));
@@ -61,7 +61,7 @@ fn read(file: &Path) -> Result<Vec<(String, MaterialSpec)>, Error> {
     Ok((1..).map(name).zip(materials).collect())
 }
 
-/// Entry of the list that the flags and the materials name.
+/// Returns the entry of the registry that the flags and the materials name.
 fn model(flags: &Shader, materials: &[(String, MaterialSpec)]) -> Result<ModelId, Error> {
     let first = materials.first().map(|(_, material)| material.model);
     let name = flags.model.as_deref().or(first.map(ModelId::name));
@@ -100,7 +100,7 @@ fn model(flags: &Shader, materials: &[(String, MaterialSpec)]) -> Result<ModelId
     })
 }
 
-/// Prints a model: the program, and its source.
+/// Visitor that prints a model and returns the program and its source.
 struct Source<'a> {
     flags: &'a Shader,
     target: ShaderTarget,
@@ -175,7 +175,7 @@ fn spirv(_: &Program) -> Result<Vec<u8>, Error> {
     ))
 }
 
-/// Refuses a material whose function would have the name of another one.
+/// Rejects a material whose function would have the name of another function.
 fn refuse_taken(
     flags: &Shader,
     program: &Program,
@@ -198,7 +198,7 @@ fn refuse_taken(
     )))
 }
 
-/// Functions that the flags name.
+/// Returns the functions that the flags name.
 fn functions(flags: &Shader, program: &Program) -> Result<Vec<Function>, Error> {
     let calls = flags.calls.iter().map(|call| match call {
         ShaderCall::Material => Call::Material,

@@ -1,4 +1,4 @@
-//! `hairis study`: runs the study, or its part; once all is there, prints its summary and writes its tables.
+//! `hairis study`: runs the study or a part of it. Once the study is complete, prints its summary and writes its tables.
 
 use super::{environment, print_tables, report_failures};
 use crate::args::Study as Flags;
@@ -19,14 +19,13 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Runs the study. Continues an interrupted one.
+/// Runs the study or the given shard of it. Continues an interrupted run.
 ///
 /// # Errors
 ///
-/// [`Error::Usage`], [`Error::Environment`], [`Error::Output`] and [`Error::Part`] before any work
-/// is done, if the shard is none, or a file cannot be read or written, or is of another study;
-/// [`Error::Failed`] at the end, with all files written, if a check failed; [`Error::Interrupted`]
-/// after a signal, with all cells kept that were begun.
+/// Returns [`Error::Usage`], [`Error::Environment`], [`Error::Output`] or [`Error::Part`] before any work is done, if the shard is invalid,
+/// or if a file cannot be read or written or belongs to another study. Returns [`Error::Failed`] at the end, with all files written, if a
+/// check failed. Returns [`Error::Interrupted`] after a signal, with all cells kept that were begun.
 pub fn run(flags: &Flags) -> Result<(), Error> {
     let shard: Shard = flags
         .shard
@@ -97,8 +96,7 @@ pub(super) fn check_outputs(out: &Path, has_materials: bool) -> Result<(), Error
     Report::writable(out)
 }
 
-/// Computes how different the models look, measures times, writes the tables and prints the
-/// summary.
+/// Computes how different the models look, measures times, writes the tables and prints the summary.
 pub(super) fn finish(
     mut study: Study,
     environment: Option<&Environment>,
@@ -107,7 +105,7 @@ pub(super) fn finish(
 ) -> Result<(), Error> {
     let journal = Journal::open(out, "difference", study.header(), interrupt)?;
     let bar = share_bar("refits {wide_bar} {percent:>3}% {elapsed} (left {eta})");
-    // V on the refits takes about as long as the fits.
+    // Measuring V on the refits takes about as long as the fits.
     let show = |first: f64| {
         let bar = &bar;
         move |done: usize, of: usize| show_share(bar, first + 0.5 * done as f64 / of as f64)
@@ -145,7 +143,8 @@ pub(super) fn finish(
     report_failures(&study.failures())
 }
 
-/// Result of `hairis claims` in `out`, if any and if it is of the same settings; else the reason on standard error.
+/// Returns the result of `hairis claims` in `out` if it has the same settings as the study. Otherwise returns none; a result that is not
+/// used is reported on standard error.
 fn claims(out: &Path, study: &Study) -> Option<serde_json::Value> {
     let path = out.join("claims.json");
     let claims = match fs::read(&path) {

@@ -1,4 +1,4 @@
-//! The plots of a comparison.
+//! Plots of a comparison, by section of the report.
 
 use super::query::{THETA_O_DEG, v_gain};
 use super::{Comparison, distinct};
@@ -13,10 +13,10 @@ use hairis_instruments::report::Drawing;
 use hairis_instruments::sequence::{SequenceKind, XiSource};
 use hairis_variants::{Cauchy, ModelId};
 
-/// Points of each panel of the sample distributions.
+/// Number of points in each panel of the sample distributions.
 const POINTS: usize = 2000;
 
-/// The Gaussian and the Cauchy bells, the models made of them, and where samples go: the paper's figure 5.
+/// Draws the Gaussian and the Cauchy bells, the models made of them, and the distribution of samples as in the paper's figure 5.
 pub(super) fn models(of: &Comparison) -> Vec<Drawing> {
     let (params, theta_o) = (HairParams::bright(), 20_f64.to_radians());
     let mut numbers = SequenceKind::Halton.source(of.settings.seed, 0, 3, POINTS);
@@ -31,7 +31,7 @@ pub(super) fn models(of: &Comparison) -> Vec<Drawing> {
     all
 }
 
-/// The verdicts in one plot: ratios of variances by light.
+/// Draws the verdicts in one plot: ratios of variances by light.
 pub(super) fn summary(of: &Comparison) -> Drawing {
     let lights = &of.efficiency.settings.lights;
     let labels: Vec<String> = lights
@@ -58,7 +58,7 @@ pub(super) fn summary(of: &Comparison) -> Drawing {
     Drawing::new("summary", chart, caption)
 }
 
-/// Speed against the reference, a chart per model.
+/// Draws the speed against the reference, one chart per model.
 pub(super) fn speeds(of: &Comparison) -> Vec<Drawing> {
     let ops = [
         TimedOp::Prepare,
@@ -67,7 +67,7 @@ pub(super) fn speeds(of: &Comparison) -> Vec<Drawing> {
         TimedOp::PointsMixed,
     ];
     let groups = ops.map(|op| op.label().to_owned());
-    // The rest is in the table.
+    // The table has the other contenders.
     let shown = |contender| ["one lane", "eight lanes", "slices"].contains(&contender);
     let contenders = of
         .speed
@@ -109,7 +109,7 @@ pub(super) fn speeds(of: &Comparison) -> Vec<Drawing> {
     ModelId::defaults_of_names().map(figure).collect()
 }
 
-/// V against the width of the primary highlight.
+/// Draws V against the width of the primary highlight.
 pub(super) fn widths(of: &Comparison) -> Vec<Drawing> {
     let figure = |theta_o: &f64| {
         let mut series = Vec::new();
@@ -147,7 +147,7 @@ pub(super) fn widths(of: &Comparison) -> Vec<Drawing> {
         .collect()
 }
 
-/// The error of the mean against the number of samples.
+/// Draws the error of the mean against the number of samples.
 pub(super) fn convergence(of: &Comparison) -> Vec<Drawing> {
     let all = &of.efficiency.convergence;
     let figure = |light: &str, model: ModelKind| {
@@ -201,7 +201,7 @@ pub(super) fn convergence(of: &Comparison) -> Vec<Drawing> {
         .collect()
 }
 
-/// Words as part of a file's name.
+/// Converts words to a part of a file name.
 fn slug(words: &str) -> String {
     words
         .split(|c: char| !c.is_ascii_alphanumeric())

@@ -1,4 +1,4 @@
-//! The report of a comparison.
+//! Report of a comparison: its verdicts, findings and sections.
 
 use super::query::{Depth, predicted, v_gain};
 use super::{CompareSettings, Comparison, charts, distinct, rays, tables};
@@ -10,7 +10,7 @@ use crate::subject::ModelKind;
 use hairis_instruments::report::{Report, Section};
 use hairis_instruments::table::number;
 
-/// The page.
+/// Returns the page with all verdicts, plots and tables of the comparison.
 #[must_use]
 pub fn report(of: &Comparison) -> Report {
     let speed = Section::new("Speed")
@@ -98,7 +98,7 @@ pub fn report(of: &Comparison) -> Report {
     }
 }
 
-/// Speed-up of eight lanes over the reference.
+/// Returns the speed-up of eight lanes over the reference, in words.
 fn speed_ratio(of: &Comparison, op: TimedOp, model: ModelKind) -> Option<String> {
     let row = of
         .speed
@@ -106,7 +106,7 @@ fn speed_ratio(of: &Comparison, op: TimedOp, model: ModelKind) -> Option<String>
     Some(number::ratio(row.ratio))
 }
 
-/// A verdict for each use case: the case and the sentence.
+/// Returns a verdict for each use case: the case and the sentence.
 fn verdicts(of: &Comparison) -> Vec<[String; 2]> {
     let level = of.speed.detected_level;
     let mut verdicts = Vec::new();
@@ -144,7 +144,7 @@ fn verdicts(of: &Comparison) -> Vec<[String; 2]> {
     verdicts
 }
 
-/// Words for a ratio of variances, as a change in the number of samples.
+/// Returns the words for a ratio of variances, as a change in the number of samples.
 fn change(ratio: f64) -> String {
     match ratio {
         ratio if ratio >= 2.0 => format!("{} fewer", number::ratio(ratio)),
@@ -154,7 +154,7 @@ fn change(ratio: f64) -> String {
     }
 }
 
-/// Findings beyond the verdicts, in sentences with figures.
+/// Returns findings beyond the verdicts, in sentences with figures.
 fn findings(of: &Comparison) -> Vec<String> {
     [
         under_constant_light(of),
@@ -191,7 +191,7 @@ fn under_constant_light(of: &Comparison) -> Option<String> {
     ))
 }
 
-/// Lists where a sampler of the BSDF does worse than uniform directions.
+/// Lists the lights under which a sampler of the BSDF does worse than uniform directions.
 fn worse_than_uniform(of: &Comparison) -> Option<String> {
     let is_worse = |row: &&EfficiencyRow| {
         predicted(row, row.sampler) > 1.05 * predicted(row, Sampler::Uniform)

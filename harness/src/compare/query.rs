@@ -1,4 +1,4 @@
-//! Queries to a comparison.
+//! Queries to a comparison that tables, plots and verdicts share.
 
 use super::Comparison;
 use crate::efficiency::EfficiencyRow;
@@ -9,17 +9,17 @@ use hairis_instruments::sequence::SequenceKind;
 /// Extent of a set of tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Depth {
-    /// The rows that fit a terminal.
+    /// Rows that fit a terminal.
     Summary,
-    /// All of it.
+    /// Every row.
     Full,
 }
 
 /// Inclination of the viewer in the verdicts, degrees.
 pub(super) const THETA_O_DEG: f64 = 45.0;
 
-/// V of the published sampler on the Gaussian model over V of another estimator, seen from [`THETA_O_DEG`]: as measured where
-/// it can be, else as predicted.
+/// Returns V of the published sampler on the Gaussian model over V of another estimator, seen from [`THETA_O_DEG`]. V is as measured if
+/// enough samples hit the light, and as predicted otherwise.
 pub(super) fn v_gain(of: &Comparison, light: &str, other: (ModelKind, Sampler)) -> Option<f64> {
     let v = |estimator| {
         let row = of.efficiency.rows.iter().find(|row| {
@@ -36,7 +36,7 @@ pub(super) fn v_gain(of: &Comparison, light: &str, other: (ModelKind, Sampler)) 
     Some(v((ModelKind::Gaussian, Sampler::Published))? / v(other)?)
 }
 
-/// V of a sampler as the reference of a row predicts it.
+/// Returns V of a sampler as the reference of a row predicts it.
 pub(super) fn predicted(row: &EfficiencyRow, sampler: Sampler) -> f64 {
     row.reference.predicted(sampler)[0]
 }

@@ -1,4 +1,4 @@
-//! Tables and the plot of one ray for many candidates.
+//! Tables and plot of one ray that is chosen from many candidates.
 
 use super::Comparison;
 use super::query::Depth;
@@ -12,19 +12,19 @@ use hairis_instruments::report::Drawing;
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::{Table, number};
 
-/// Candidates of each technique whose V is shown.
+/// Candidates of each technique for which V is shown.
 const SHOWN: [u32; 3] = [4, 8, 16];
 
-/// Pools in the plot: candidates of each technique, and rays.
+/// Pools in the plot: number of candidates of each technique, and of rays.
 const PLOTTED: [[u32; 2]; 5] = [[4, 1], [8, 1], [16, 4], [16, 8], [32, 16]];
 
-/// Samplers in the summary: the published one, the default, and those that models have on their own.
+/// Samplers in the summary: the published one, the default, and those of models with a single sampler.
 const DEFAULTS: [&str; 4] = ["published", "matched", "its own", "mean"];
 
-/// The model and sampler of the plot and of the sentence.
+/// Model and sampler of the plot and of the sentence.
 const EXAMPLE: [&str; 2] = ["gaussian", "published"];
 
-/// A row with its times and efficiencies.
+/// Row with its times and efficiencies.
 type Measured<'a> = (&'a RayRow, &'a RayTimes, &'a EqualTime);
 
 fn measured(of: &Comparison) -> impl Iterator<Item = Measured<'_>> {
@@ -46,7 +46,7 @@ fn example(of: &Comparison) -> Option<Measured<'_>> {
     under_environment(of).find(|(row, ..)| [row.model, row.sampler] == EXAMPLE)
 }
 
-/// The tables; the summary has those samplers that most use, under the environment.
+/// Returns the tables. The summary has the samplers in [`DEFAULTS`] under the environment.
 pub(super) fn tables(of: &Comparison, depth: Depth) -> Vec<Table> {
     if depth == Depth::Summary {
         let rows = under_environment(of).filter(|(row, ..)| DEFAULTS.contains(&row.sampler));
@@ -66,7 +66,7 @@ fn pool_name(candidates_each: u32) -> String {
     format!("{candidates_each} + {candidates_each}")
 }
 
-/// One ray of the BSDF, of the light, of MIS, and from the pools of [`SHOWN`].
+/// Returns one ray of the BSDF, of the light, of MIS, and from each of the pools of [`SHOWN`].
 fn shown(row: &RayRow) -> Vec<&OneRay> {
     let pools = SIZES
         .iter()
@@ -79,12 +79,12 @@ fn shown(row: &RayRow) -> Vec<&OneRay> {
         .collect()
 }
 
-/// V of MIS over V from each pool of [`SHOWN`], given V of [`shown`].
+/// Returns V of MIS over V from each pool of [`SHOWN`], given V of [`shown`].
 fn over_pools(v: &[Estimate]) -> impl Iterator<Item = Estimate> {
     v.iter().skip(3).map(|pool| v[2].ratio(pool))
 }
 
-/// V of one ray where these shares of the directions are visible.
+/// Returns the table of V of one ray if these shares of the directions are visible.
 fn variances(rows: &[Measured<'_>], shares: &[f64]) -> Table {
     let mut table = Table::new("V of one ray")
         .texts(["model", "sampler", "light", "visible"])
@@ -223,7 +223,7 @@ fn fronts(of: &Comparison) -> Table {
     )
 }
 
-/// Gains over one-sample MIS against the price of a ray.
+/// Draws the gains over one-sample MIS against the price of a ray.
 pub(super) fn chart(of: &Comparison) -> Option<Drawing> {
     let (row, _, equal) = example(of)?;
     let words = in_words(&row.light);
@@ -263,7 +263,7 @@ pub(super) fn chart(of: &Comparison) -> Option<Drawing> {
     Some(Drawing::new("rays-by-price", chart, caption))
 }
 
-/// The answer in a sentence.
+/// Returns the finding about rays in a sentence.
 pub(super) fn finding(of: &Comparison) -> Option<String> {
     let (row, _, equal) = example(of)?;
     let v: Vec<Estimate> = shown(row).iter().map(|one| one.unoccluded).collect();

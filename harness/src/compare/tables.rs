@@ -1,4 +1,4 @@
-//! The tables of a comparison: the same for the terminal and for the page, which has more rows.
+//! Tables of a comparison. Terminal and page have the same tables, with more rows on the page.
 
 use super::query::{Depth, predicted};
 use super::{Comparison, distinct, rays};
@@ -11,7 +11,7 @@ use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::{Table, number};
 use hairis_variants::ModelId;
 
-/// The tables that fit a terminal.
+/// Returns the tables that are printed on the terminal, with the rows that fit it.
 #[must_use]
 pub fn summary(of: &Comparison) -> Vec<Table> {
     let depth = Depth::Summary;
@@ -25,7 +25,7 @@ pub fn summary(of: &Comparison) -> Vec<Table> {
     .concat()
 }
 
-/// Time per direction.
+/// Returns the tables of time per direction.
 pub(super) fn speed(of: &Comparison, depth: Depth) -> Vec<Table> {
     let quartiles = |[low, high]: [f64; 2], shown: fn(f64) -> String| {
         format!("{} to {}", shown(low), shown(high))
@@ -85,7 +85,7 @@ pub(super) fn speed(of: &Comparison, depth: Depth) -> Vec<Table> {
         .collect()
 }
 
-/// Errors against double precision.
+/// Returns the table of errors against double precision.
 pub(super) fn agreement(of: &Comparison, depth: Depth) -> Table {
     let shown = [
         Quantity::Pdf,
@@ -122,7 +122,7 @@ pub(super) fn agreement(of: &Comparison, depth: Depth) -> Table {
         .note("The error of the cdf is the distance from the number that a sample was drawn with.")
 }
 
-/// Variances per sample, and what follows from them.
+/// Returns the tables of variances per sample, and of the figures that follow from them.
 pub(super) fn efficiency(of: &Comparison, depth: Depth) -> Vec<Table> {
     let is_full = depth == Depth::Full;
     let n = of.efficiency.settings.budget.correlated;
@@ -180,7 +180,7 @@ fn reference(of: &Comparison) -> Table {
         .note("V is the variance of one sample over the squared mean; z is its distance from the quadrature in standard errors; recorded, where there is one, is another implementation's.")
 }
 
-/// Adds a line for each group of rows that have the same words at its beginning, with the cell of the row of each column.
+/// Adds a line for each group of rows with the same leading words; each column has the cell of its row.
 fn pivot<'a, R: 'a, C: PartialEq>(
     mut table: Table,
     rows: impl Iterator<Item = &'a R>,
@@ -202,7 +202,7 @@ fn pivot<'a, R: 'a, C: PartialEq>(
     table
 }
 
-/// A table with a column for each sampler, of independent numbers or of every kind.
+/// Returns a table with a column for each sampler, of independent numbers or of every kind.
 fn by_light(
     of: &Comparison,
     title: &str,
@@ -228,7 +228,7 @@ fn by_light(
     pivot(table, rows, &words, &SAMPLERS, |row| row.sampler, cell)
 }
 
-/// The measured figure, or what follows from the V of the reference where too few samples meet the light to measure it.
+/// Returns the measured figure or, if too few samples hit the light to measure it, the figure that follows from the V of the reference.
 fn tested_or(row: &EfficiencyRow, measured: &Estimate, of_v: fn(f64) -> f64) -> String {
     if row.tested || row.sequence != SequenceKind::Independent {
         return number::estimate(measured);
@@ -236,7 +236,7 @@ fn tested_or(row: &EfficiencyRow, measured: &Estimate, of_v: fn(f64) -> f64) -> 
     format!("≈ {}", number::plain(of_v(predicted(row, row.sampler)), 3))
 }
 
-/// The summary leaves out what the table of variances has: each sampler alone.
+/// Returns the table of light sampling. The summary leaves out each sampler alone, which the table of variances has.
 fn light_sampling(of: &Comparison, depth: Depth) -> Table {
     let is_shown =
         |row: &&MisRow| depth == Depth::Full || !matches!(row.technique, Technique::Bsdf(_));

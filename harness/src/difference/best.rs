@@ -1,18 +1,18 @@
-//! The width factor that fits best.
+//! Width factor that fits best, by a search in one dimension.
 
 use core::f64::consts;
 
-/// The factors that are tried, the range that the kernels accept.
+/// Range of the factors that are tried, which the kernels accept.
 pub(super) const RANGE: [f64; 2] = [0.5, 4.0];
 
-/// Widths to which the least is known, relative.
+/// Relative precision to which the best factor is found.
 const PRECISION: f64 = 1e-6;
 
-/// Minimum of `f` in [`RANGE`]: the best of a scan, then golden sections on either side of it.
+/// Finds the minimum of `f` in [`RANGE`]: scans the range, then takes golden sections on either side of the best point.
 ///
 /// # Errors
 ///
-/// The first of `f`.
+/// Returns the first error of `f`.
 pub(crate) fn least<E>(mut f: impl FnMut(f64) -> Result<f64, E>) -> Result<f64, E> {
     const STEPS: i32 = 16;
     let [low, high] = RANGE.map(f64::ln);
@@ -58,7 +58,7 @@ mod tests {
             let found = least(|k| (k / want).ln().powi(2) + 1.0);
             assert!((found / want - 1.0).abs() < 1e-5, "{found} for {want}");
         }
-        // Of two hollows the deeper one.
+        // If there are two minima, the deeper one is found.
         let found = least(|k| (k - 1.0).powi(2).min((k - 3.0).powi(2) - 0.1));
         assert!((found - 3.0).abs() < 1e-4, "{found}");
         assert!(

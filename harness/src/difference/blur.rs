@@ -1,12 +1,11 @@
-//! Blurred functions on the sphere, through spherical harmonics.
+//! Blurred functions on the sphere, by spherical harmonics.
 //!
-//! The blur is the von Mises-Fisher density `exp(kappa cos gamma) kappa / (4 pi sinh kappa)` with `kappa = 1 / sigma^2`:
-//! the Gaussian of the sphere, of deviation `sigma` along each of two directions at right angles. A convolution with it
-//! multiplies every harmonic of degree l by one number, which falls so fast that degrees beyond [`DEGREE`] are below
-//! 1e-9 of what they were: the error in L2 is below that share of the function's own norm, since it is the norm of
-//! what is left out (Parseval).
+//! The blur is the von Mises-Fisher density `exp(kappa cos gamma) kappa / (4 pi sinh kappa)` with `kappa = 1 / sigma^2`: the Gaussian of
+//! the sphere, of deviation `sigma` along each of two directions at right angles. A convolution with it multiplies every harmonic of degree
+//! l by one number. These numbers fall so fast that degrees beyond [`DEGREE`] are reduced to less than 1e-9. By Parseval's theorem, the
+//! error in L2 is the norm of what is left out, and so below that share of the function's own norm.
 //!
-//! Functions are even in `phi`, so that `cos(m phi)` is all they need.
+//! Functions are even in `phi`, so that `cos(m phi)` suffices.
 
 use super::lobes::{BellValues, Rule, TERMS, dot};
 use core::f64::consts::{PI, SQRT_2};
@@ -18,29 +17,29 @@ pub const SIGMA_DEG: f64 = 10.0;
 /// Highest degree that is kept.
 pub(super) const DEGREE: usize = 40;
 
-/// Coefficients of even functions up to [`DEGREE`].
+/// Number of coefficients of even functions up to [`DEGREE`].
 const COEFFICIENTS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 
 /// Share of each harmonic above [`DEGREE`] that a blur of [`SIGMA_DEG`] leaves, at most.
 #[cfg(test)]
 pub(super) const REST: f64 = 1e-9;
 
-/// The coefficients of a blurred function: orders outermost, degrees from the order upwards.
+/// Coefficients of a blurred function: orders outermost, degrees from the order upwards.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Harmonics(Vec<f64>);
 
-/// The blur, and the directions at which blurred functions are evaluated.
+/// Blur, with the directions at which blurred functions are evaluated.
 #[derive(Debug)]
 pub(super) struct Blur {
-    /// The factor on each degree.
+    /// Factor on each degree.
     factors: Vec<f64>,
-    /// For each latitude its weight and the Legendre functions.
+    /// Weight and Legendre functions of each latitude.
     latitudes: Vec<(f64, Vec<f64>)>,
     /// `cos(m phi)` for each longitude of a half circle.
     cosines: Vec<[f64; DEGREE + 1]>,
 }
 
-/// The orders of the coefficients with the ranges of their degrees' places.
+/// Returns the orders, each with the range of indices that its degrees have among the coefficients.
 fn orders() -> impl Iterator<Item = (usize, core::ops::Range<usize>)> {
     let mut start = 0;
     (0..=DEGREE).map(move |order| {
@@ -50,8 +49,8 @@ fn orders() -> impl Iterator<Item = (usize, core::ops::Range<usize>)> {
     })
 }
 
-/// The Legendre functions of `sin theta`, normalised so that with `cos(m phi)`, and a factor of the square root of 2 for
-/// orders above 0, which is included, the harmonics are orthonormal.
+/// Returns the Legendre functions of `sin theta`. They are normalised so that their products with `cos(m phi)` are orthonormal, which
+/// includes a factor of the square root of 2 for orders above 0.
 fn legendre(theta: f64) -> Vec<f64> {
     let (x, cos_theta) = theta.sin_cos();
     let mut all = vec![0.0; COEFFICIENTS];
@@ -79,8 +78,8 @@ fn legendre(theta: f64) -> Vec<f64> {
     all
 }
 
-/// The factors of a von Mises-Fisher blur on degrees 0 to `last`: ratios of modified spherical Bessel functions of
-/// `kappa`, by downward recurrence.
+/// Returns the factors of a von Mises-Fisher blur on degrees 0 to `last`: ratios of modified spherical Bessel functions of `kappa`, by
+/// downward recurrence.
 fn factors(kappa: f64, last: usize) -> Vec<f64> {
     let mut ratio = 0.0;
     let mut ratios = vec![0.0; last + 1];
@@ -98,7 +97,7 @@ fn factors(kappa: f64, last: usize) -> Vec<f64> {
 }
 
 impl Blur {
-    /// A blur of deviation `sigma` (rad), evaluated at `latitudes` by `longitudes` directions of half a sphere.
+    /// Prepares a blur of deviation `sigma` (rad), evaluated at `latitudes` by `longitudes` directions of half a sphere.
     pub(super) fn new(sigma: f64, latitudes: usize, longitudes: usize) -> Self {
         let rule = GaussLegendre::new(latitudes);
         let weight = 2.0 * PI / longitudes as f64;
@@ -117,7 +116,7 @@ impl Blur {
         }
     }
 
-    /// The harmonics of several functions, blurred.
+    /// Returns the harmonics of several functions, blurred.
     pub(super) fn harmonics(&self, rule: &Rule, functions: &[BellValues]) -> Vec<Harmonics> {
         let legendre: Vec<Vec<f64>> = rule
             .along
@@ -157,7 +156,7 @@ impl Blur {
         functions.iter().map(blurred).collect()
     }
 
-    /// The values of a blurred function at the directions, each with its weight: those of one latitude after the other.
+    /// Returns the values of a blurred function at the directions, one latitude after the other.
     pub(super) fn values(&self, of: &Harmonics) -> Vec<f64> {
         let mut values = Vec::with_capacity(self.latitudes.len() * self.cosines.len());
         for (_, legendre) in &self.latitudes {
@@ -167,7 +166,7 @@ impl Blur {
         values
     }
 
-    /// The integral over the sphere of `|a - scale b|`, from their values.
+    /// Returns the integral over the sphere of `|a - scale b|`, from values at the directions.
     pub(super) fn l1(&self, a: &[f64], b: &[f64], scale: f64) -> f64 {
         let columns = self.cosines.len();
         let rows = a.chunks_exact(columns).zip(b.chunks_exact(columns));
@@ -186,7 +185,7 @@ impl Blur {
 }
 
 impl Harmonics {
-    /// The L2 norm of `self - scale other`.
+    /// Returns the L2 norm of `self - scale other`.
     pub(super) fn l2(&self, other: &Self, scale: f64) -> f64 {
         self.0
             .iter()
@@ -196,18 +195,18 @@ impl Harmonics {
             .sqrt()
     }
 
-    /// The L2 norm.
+    /// Returns the L2 norm of the function.
     pub(super) fn norm(&self) -> f64 {
         self.0.iter().map(|c| c * c).sum::<f64>().sqrt()
     }
 
-    /// The integral over the sphere.
+    /// Returns the integral of the function over the sphere.
     #[cfg(test)]
     fn integral(&self) -> f64 {
         self.0[0] * (4.0 * PI).sqrt()
     }
 
-    /// The coefficients of the cosines on a latitude, of which these are the Legendre functions.
+    /// Returns the coefficients of the cosines on a latitude, given the Legendre functions of that latitude.
     fn on_latitude(&self, legendre: &[f64]) -> [f64; DEGREE + 1] {
         let mut sums = [0.0; DEGREE + 1];
         for (order, range) in orders() {
@@ -216,7 +215,7 @@ impl Harmonics {
         sums
     }
 
-    /// The blurred function's value in a direction.
+    /// Returns the blurred function's value in a direction.
     pub(crate) fn at(&self, theta: f64, phi: f64) -> f64 {
         let sums = self.on_latitude(&legendre(theta));
         (0..)
@@ -238,7 +237,7 @@ mod tests {
         Blur::new(SIGMA_DEG.to_radians(), 64, 64)
     }
 
-    /// A rule without lobes, and a function of `theta` alone on it.
+    /// Returns a rule without lobes, and a function of `theta` alone on it.
     fn plain(f: impl Fn(f64) -> f64) -> (Rule, BellValues) {
         let rule = GaussLegendre::new(128);
         let along: Nodes = rule

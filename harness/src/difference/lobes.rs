@@ -1,4 +1,4 @@
-//! `S cos theta_i` of one hair as a sum of three products, each of a function of `theta_i` and one of `phi`.
+//! Factorisation of `S cos theta_i` of one hair into a sum of three products, each of a function of `theta_i` and one of `phi`.
 //!
 //! `S cos theta_i = sum_j along_j(theta_i) around_j(phi)`, the mean of RGB, with
 //! - `cos(phi / 2)` around for R and TRT-g together,
@@ -14,27 +14,27 @@ use hairis::params::HairDesc;
 use hairis_instruments::quadrature::GaussLegendre;
 use hairis_reference::Shape;
 
-/// The products of `S cos theta_i`.
+/// Number of products in `S cos theta_i`.
 pub(super) const TERMS: usize = 3;
 
-/// A bell, and the factor on its widths.
+/// Kind of bell, with the factor on its widths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Kind {
     pub(super) shape: Shape,
     pub(super) factor: f64,
-    /// Parameters in place of those of the hair.
+    /// Parameters that replace those of the hair.
     refit: Option<HairDesc<f64>>,
 }
 
 impl Kind {
-    /// The published model.
+    /// Published model, with Gaussian bells.
     pub(super) const GAUSSIAN: Self = Self {
         shape: Shape::Gaussian,
         factor: 1.0,
         refit: None,
     };
 
-    /// The Cauchy model with its widths times `factor`.
+    /// Returns the Cauchy model with its widths times `factor`.
     pub(super) const fn cauchy(factor: f64) -> Self {
         Self {
             shape: Shape::Cauchy,
@@ -43,7 +43,7 @@ impl Kind {
         }
     }
 
-    /// The Cauchy model with parameters of its own.
+    /// Returns the Cauchy model with parameters of its own.
     pub(super) fn refitted(params: &HairParams) -> Self {
         Self {
             shape: Shape::Cauchy,
@@ -52,46 +52,46 @@ impl Kind {
         }
     }
 
-    /// The parameters of a hair in this model.
+    /// Returns the parameters of a hair in this model.
     fn parameters(self, of: &ViewedHair) -> HairDesc<f64> {
         let own = self.refit.unwrap_or(of.parameters);
         own.with_width_factor(self.factor)
     }
 }
 
-/// Hair seen from an inclination.
+/// Hair seen from one inclination.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ViewedHair {
     parameters: HairDesc<f64>,
     theta_o: f64,
 }
 
-/// Points of a quadrature rule and their weights.
+/// Points of a quadrature rule, each with its weight.
 pub(super) type Nodes = Vec<[f64; 2]>;
 
-/// The points at which a hair is integrated. They serve every [`Kind`] whose factor is near 1.
+/// Points at which a hair is integrated. They serve every [`Kind`] whose factor is near 1.
 #[derive(Clone, Debug)]
 pub(super) struct Rule {
-    /// `theta_i` in rad; weights include the `cos theta_i` of the solid angle.
+    /// Points `theta_i` in rad; weights include the `cos theta_i` of the solid angle.
     pub(super) along: Nodes,
-    /// `|phi|` in rad; weights count both signs.
+    /// Points `|phi|` in rad; weights count both signs.
     pub(super) around: Nodes,
 }
 
-/// The values of the three products of a [`Kind`] at the points of a [`Rule`].
+/// Values of the three products of a [`Kind`] at the points of a [`Rule`].
 #[derive(Clone, Debug)]
 pub(super) struct BellValues {
     pub(super) along: Vec<[f64; TERMS]>,
     pub(super) around: Vec<[f64; TERMS]>,
 }
 
-/// The sum of products.
+/// Returns the sum of products of two slices.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl ViewedHair {
-    /// The hair seen from `theta_o`, in rad, within (-pi/2, pi/2).
+    /// Returns the hair seen from `theta_o`, in rad, within (-pi/2, pi/2).
     pub(super) fn new(params: &HairParams, theta_o: f64) -> Self {
         Self {
             parameters: params.desc().map(f64::from),
@@ -99,7 +99,7 @@ impl ViewedHair {
         }
     }
 
-    /// The factors that depend on `theta_i`.
+    /// Returns the factors that depend on `theta_i`.
     pub(super) fn along(&self, kind: Kind, theta_i: f64) -> [f64; TERMS] {
         let p = kind.parameters(self);
         let (theta_h, theta_d) = (
@@ -114,7 +114,7 @@ impl ViewedHair {
         [r * m_r + trt * m_trt, tt * m_tt, trt * p.i_g * m_trt]
     }
 
-    /// The factors that depend on `phi`, which is in [-pi, pi].
+    /// Returns the factors that depend on `phi`, which is in [-pi, pi].
     pub(super) fn around(&self, kind: Kind, phi: f64) -> [f64; TERMS] {
         let p = kind.parameters(self);
         let bell = |width, x| kind.shape.bell(width, x);
@@ -125,7 +125,7 @@ impl ViewedHair {
         ]
     }
 
-    /// Gauss-Legendre rules of `order` points on panels that follow the lobes.
+    /// Returns Gauss-Legendre rules of `order` points on panels that follow the lobes.
     pub(super) fn rule(&self, order: usize) -> Rule {
         const DISTANCES: [f64; 9] = [-12.0, -5.0, -2.5, -1.0, 0.0, 1.0, 2.5, 5.0, 12.0];
         let p = &self.parameters;
@@ -136,7 +136,7 @@ impl ViewedHair {
             let centre = 2.0 * p.alpha[l] - self.theta_o;
             along.extend(DISTANCES.map(|d| centre + 2.0 * d * p.beta[l]));
         }
-        // cos^2 theta_i / cos^2 theta_d turns at theta_i = -theta_o within the distance of the pole.
+        // The ratio cos^2 theta_i / cos^2 theta_d turns at theta_i = -theta_o, over a range as wide as the distance to the pole.
         let pole = FRAC_PI_2 - self.theta_o.abs();
         along.extend(
             [-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 5.0]
@@ -157,7 +157,7 @@ impl ViewedHair {
     }
 }
 
-/// A rule on each panel between the breakpoints within the interval.
+/// Returns the nodes of a rule on each panel between the breakpoints within the interval.
 fn panels(rule: &GaussLegendre, mut breaks: Vec<f64>, [lo, hi]: [f64; 2]) -> Nodes {
     breaks.retain(|x| (lo..=hi).contains(x));
     breaks.sort_by(f64::total_cmp);
@@ -169,7 +169,7 @@ fn panels(rule: &GaussLegendre, mut breaks: Vec<f64>, [lo, hi]: [f64; 2]) -> Nod
 }
 
 impl Rule {
-    /// The values of a model at its points.
+    /// Returns the values of a model at the points of the rule.
     pub(super) fn values(&self, view: &ViewedHair, kind: Kind) -> BellValues {
         BellValues {
             along: self
@@ -185,7 +185,7 @@ impl Rule {
         }
     }
 
-    /// The integral of `S cos theta_i` over the sphere: the directional albedo, the mean of RGB.
+    /// Returns the integral of `S cos theta_i` over the sphere, which is the directional albedo as the mean of RGB.
     pub(super) fn albedo(&self, of: &BellValues) -> f64 {
         let integral = |nodes: &Nodes, values: &[[f64; TERMS]]| -> [f64; TERMS] {
             array::from_fn(|j| {
@@ -202,7 +202,7 @@ impl Rule {
         )
     }
 
-    /// The integral of the product of two models' `S cos theta_i` over the sphere.
+    /// Returns the integral over the sphere of the product of two models' `S cos theta_i`.
     pub(super) fn product(&self, a: &BellValues, b: &BellValues) -> f64 {
         let (along, around) = (
             gram(&self.along, &a.along, &b.along),
@@ -212,7 +212,7 @@ impl Rule {
     }
 }
 
-/// The integrals of the products of two models' terms.
+/// Returns the integrals of the products of two models' terms.
 fn gram(nodes: &Nodes, a: &[[f64; TERMS]], b: &[[f64; TERMS]]) -> [[f64; TERMS]; TERMS] {
     let integral = |i: usize, j: usize| {
         let values = a.iter().zip(b).map(|(a, b)| (a[i], b[j]));

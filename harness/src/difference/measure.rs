@@ -1,34 +1,34 @@
-//! One cell: the distance of a Cauchy model from the Gaussian one.
+//! Measurement of one cell: the distance of a Cauchy model from the Gaussian one.
 
 use super::blur::Blur;
 use super::lobes::{BellValues, Kind, Rule, ViewedHair, dot};
 
-/// Differences between a Cauchy model and the Gaussian one of the same hair: of `S cos theta_i`, the mean of RGB, over
-/// the sphere, relative to the same norm of the Gaussian model alone.
+/// Differences between a Cauchy model and the Gaussian one of the same hair: of `S cos theta_i`, the mean of RGB, over the sphere, relative
+/// to the same norm of the Gaussian model alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Differences {
-    /// Factor on the widths; 1 for parameters of its own.
+    /// Factor on the widths, 1 for fitted parameters.
     pub k: f64,
     /// Albedo of the Gaussian model: the integral of `S cos theta_i`.
     pub albedo_gaussian: f64,
     /// Albedo of the Cauchy model.
     pub albedo_cauchy: f64,
-    /// As they are.
+    /// Difference of the models as they are.
     pub plain: Norms,
-    /// With the Cauchy model scaled to the albedo of the Gaussian one: the shape alone.
+    /// Difference in shape alone, with the Cauchy model scaled to the albedo of the Gaussian one.
     pub shape: Norms,
-    /// As they are, after a blur of [`SIGMA_DEG`](super::SIGMA_DEG).
+    /// Difference of the models as they are, after a blur of [`SIGMA_DEG`](super::SIGMA_DEG).
     pub blurred: Norms,
-    /// The shape alone, after the blur.
+    /// Difference in shape alone, after the blur.
     pub blurred_shape: Norms,
 }
 
-/// Two norms of a difference.
+/// Norms of a difference between two functions on the sphere, in L1 and in L2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Norms {
-    /// The integral of the magnitude.
+    /// Integral of the magnitude.
     pub l1: f64,
-    /// The root of the integral of the square.
+    /// Root of the integral of the square.
     pub l2: f64,
 }
 
@@ -36,7 +36,7 @@ pub struct Norms {
 pub(super) const NUMBERS: usize = 11;
 
 impl Differences {
-    /// All of its numbers.
+    /// Returns all numbers of the differences, for the journal.
     pub(super) fn numbers(&self) -> [f64; NUMBERS] {
         let Self {
             k,
@@ -54,7 +54,7 @@ impl Differences {
         numbers
     }
 
-    /// From its numbers.
+    /// Restores differences from their numbers.
     pub(super) fn from_numbers(numbers: [f64; NUMBERS]) -> Self {
         let norms = |place: usize| Norms {
             l1: numbers[place],
@@ -72,20 +72,20 @@ impl Differences {
     }
 }
 
-/// A hair with the values of its Gaussian model at the points of its rule.
+/// Hair with the values of its Gaussian model at the points of its rule.
 #[derive(Debug)]
 pub(super) struct HairValues {
     view: ViewedHair,
     rule: Rule,
-    /// As fine again: the magnitude of a difference has kinks wherever the models cross.
+    /// Rule of twice the order, because the magnitude of a difference has kinks at the angles at which the models cross.
     fine: Rule,
     gaussian: BellValues,
-    /// Integral of its square.
+    /// Integral of the square of the Gaussian model.
     square: f64,
 }
 
 impl HairValues {
-    /// Prepares a hair; `order` is that of the rules on each panel.
+    /// Prepares a hair; `order` is the order of the rules on each panel.
     pub(super) fn new(view: ViewedHair, order: usize) -> Self {
         let rule = view.rule(order);
         let gaussian = rule.values(&view, Kind::GAUSSIAN);
@@ -99,7 +99,7 @@ impl HairValues {
         }
     }
 
-    /// The square of the relative L2 difference of the Cauchy model with its widths times `k`.
+    /// Returns the square of the relative L2 difference of the Cauchy model with its widths times `k`.
     pub(super) fn square_error(&self, k: f64) -> f64 {
         self.square_of(&self.rule.values(&self.view, Kind::cauchy(k)), 1.0)
     }
@@ -109,11 +109,11 @@ impl HairValues {
             self.rule.product(&self.gaussian, other),
             self.rule.product(other, other),
         );
-        // For equal models rounding may make the difference negative.
+        // If the models are equal, rounding may make the difference negative.
         ((self.square - 2.0 * scale * cross + scale * scale * square) / self.square).max(0.0)
     }
 
-    /// The figures of several models.
+    /// Returns the figures of several models.
     pub(super) fn figures(&self, kinds: &[Kind], blur: &Blur) -> Vec<Differences> {
         let mut models = vec![self.gaussian.clone()];
         models.extend(kinds.iter().map(|kind| self.rule.values(&self.view, *kind)));
@@ -147,7 +147,7 @@ impl HairValues {
             .collect()
     }
 
-    /// The integrals of the magnitude of the Gaussian model less each of the others: as it is, and scaled to its albedo.
+    /// Returns the integrals of the magnitude of the Gaussian model less each other model: as it is, and scaled to its albedo.
     fn magnitudes(&self, kinds: &[Kind], albedos: &[f64]) -> Vec<[f64; 2]> {
         let kinds = [Kind::GAUSSIAN].iter().chain(kinds);
         let models: Vec<BellValues> = kinds
@@ -155,7 +155,7 @@ impl HairValues {
             .collect();
         let mut sums = vec![[0.0; 2]; models.len() - 1];
         for (place, [_, weight]) in self.fine.along.iter().enumerate() {
-            // The models on one latitude.
+            // Values of the models on one latitude.
             let row = |model: &BellValues| {
                 model
                     .around

@@ -1,4 +1,4 @@
-//! The differences as columns and as tables.
+//! Columns and tables of the differences.
 
 use super::{Difference, Differences, Width};
 use crate::study::grid::{GridAxis, columns_of};
@@ -6,10 +6,10 @@ use hairis_instruments::columns::Columns;
 use hairis_instruments::stats::percentile;
 use hairis_instruments::table::{Table, number};
 
-/// A figure of a row: its column, its name in tables, and its value.
+/// Figure of a row: its column, its name in tables, and the function that returns its value.
 type Figure = (&'static str, &'static str, fn(&Differences) -> f64);
 
-/// The relative differences.
+/// Relative differences, in the order of columns and tables.
 const NORMS: [Figure; 8] = [
     ("l1", "L1", |f| f.plain.l1),
     ("l2", "L2", |f| f.plain.l2),
@@ -35,7 +35,7 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    /// Summary of positive numbers; NaN if there are none.
+    /// Summarises positive numbers; all fields are NaN if there are none.
     pub(crate) fn of(values: impl Iterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.collect();
         values.sort_by(f64::total_cmp);
@@ -51,7 +51,7 @@ impl Summary {
 }
 
 impl Difference {
-    /// The rows as columns.
+    /// Returns the rows as columns of a file.
     ///
     /// | column | content |
     /// |---|---|
@@ -77,18 +77,18 @@ impl Difference {
         })
     }
 
-    /// The tables that sum it up.
+    /// Returns the tables that summarise the differences: by widths, by roughness and by inclination.
     #[must_use]
     pub fn tables(&self) -> Vec<Table> {
         vec![self.by_width(), self.by_roughness(), self.by_inclination()]
     }
 
-    /// The summary of a figure over the cells of one choice of widths.
+    /// Summarises a figure over the cells of one choice of widths.
     pub(crate) fn summary(&self, width: Width, of: fn(&Differences) -> f64) -> Summary {
         Summary::of(self.of(width).map(|row| of(&row.figures)))
     }
 
-    /// Differences for each value of an axis of the grid.
+    /// Summarises a figure for each value of an axis of the grid.
     pub(crate) fn along(
         &self,
         axis: GridAxis,
@@ -106,7 +106,7 @@ impl Difference {
         values.iter().map(summary).collect()
     }
 
-    /// The factor of a choice of widths; for that of each cell its range, in words; nothing without a factor.
+    /// Returns the factor of a choice of widths in words, or its range if every cell has its own; empty without a factor.
     pub(crate) fn factor(&self, width: Width) -> String {
         if width == Width::Refitted {
             return String::new();
@@ -195,7 +195,7 @@ impl Difference {
     }
 }
 
-/// Albedo of the Cauchy model over that of the Gaussian one.
+/// Returns the albedo of the Cauchy model over that of the Gaussian one.
 pub(crate) fn albedo_ratio(of: &Differences) -> f64 {
     of.albedo_cauchy / of.albedo_gaussian
 }

@@ -1,4 +1,4 @@
-//! The Cauchy model whose parameters are fitted to the look of each hair of a grid.
+//! Refits: the Cauchy model whose parameters are fitted to the look of each hair of a grid.
 
 use crate::fit::{FitConfig, Look, fit};
 use crate::journal::Journal;
@@ -9,15 +9,15 @@ use hairis_instruments::progress::Progress;
 use hairis_materials::material::single;
 use hairis_variants::{ModelId, Parameters as _, Values};
 
-/// Numbers of the fields of hair.
+/// Number of all numbers in the fields of hair.
 const NUMBERS: usize = 19;
 
-/// Number of the hair of a cell.
+/// Returns the index of a cell's hair.
 pub(super) const fn hair_of(grid: &Grid, cell: &Cell) -> usize {
     cell.index / grid.theta_o_deg.len()
 }
 
-/// The fitted parameters of every hair.
+/// Returns the fitted parameters of every hair.
 pub(super) fn all(
     grid: Grid,
     journal: &Journal,
@@ -42,14 +42,14 @@ pub(super) fn all(
     progress.map(&first_cells, refit).into_iter().collect()
 }
 
-/// All numbers of the fields.
+/// Returns all numbers of the fields.
 fn numbers(of: &Values) -> [f64; NUMBERS] {
     let fields = 0..of.fields().len();
     let mut all = fields.flat_map(|index| of.numbers_at(index).iter().copied());
     core::array::from_fn(|_| all.next().map_or(f64::NAN, f64::from))
 }
 
-/// The values of these numbers.
+/// Restores values from their numbers.
 fn values(of: &[f64; NUMBERS]) -> Values {
     let mut values = ModelId::Cauchy.measured();
     let mut rest = &of[..];

@@ -1,4 +1,4 @@
-//! One model seen from one direction: the measured eight-lane shading point, and its double-precision oracle.
+//! Case of one model seen from one direction: the measured eight-lane shading point, and its double-precision oracle.
 
 use super::{ModelKind, PHI_O_DEG};
 use crate::sampler::{Sampler, Scatter, UNIFORM_PDF};
@@ -13,24 +13,24 @@ use hairis_instruments::quadrature::{SphereIntegrator, Tolerance};
 use hairis_instruments::sequence::{XiSource, to_unit_f32};
 use hairis_reference::Reference;
 
-/// A model with its parameters, seen from `wo`.
+/// Model with its parameters, seen from `wo`.
 pub(crate) struct Case {
     pub(super) model: ModelKind,
     pub(super) theta_o_deg: f64,
-    /// In the order of [`Sampler::ALL`].
+    /// Samplers of the case, in the order of [`Sampler::ALL`].
     estimators: [SampledCase; Sampler::ALL.len()],
 }
 
-/// One sampler of the case.
+/// Sampler of the case, with its oracle.
 struct SampledCase {
     scatter: Scatter,
-    /// S, and the density of every sampler but the uniform one.
+    /// Oracle of S, and of the density of every sampler but the uniform one.
     oracle: Box<dyn Reference<f64>>,
-    /// An integrator with breakpoints at the lobes, and at the jumps of the density.
+    /// Integrator with breakpoints at the lobes, and at the jumps of the density.
     sphere: SphereIntegrator,
 }
 
-/// Eight samples of one technique. A discarded one has weight and density 0.
+/// Eight samples of one technique. Discarded samples have weight and density 0.
 pub(super) struct Draws {
     pub(super) dir: [DVec3; 8],
     /// `S cos theta_i / pdf`, linear RGB.
@@ -52,7 +52,7 @@ impl core::fmt::Debug for Case {
 impl Case {
     pub(crate) fn new(model: ModelKind, params: &HairParams, theta_o_deg: f64) -> Self {
         let wo = fibre_direction(theta_o_deg.to_radians(), PHI_O_DEG.to_radians()).as_vec3();
-        // The oracle gets the same rounded direction.
+        // The oracle is prepared with the same rounded direction.
         let (parameters, exact) = (params.desc().map(f64::from), wo.as_dvec3());
         let estimators = Sampler::ALL.map(|sampler| {
             let formulas = model.formulas(sampler.bands());
@@ -78,12 +78,12 @@ impl Case {
         &self.estimators[sampler as usize]
     }
 
-    /// An integrator for integrands with the density of `sampler`.
+    /// Returns an integrator for integrands with the density of `sampler`.
     pub(super) fn sphere(&self, sampler: Sampler) -> &SphereIntegrator {
         &self.of(sampler).sphere
     }
 
-    /// `S cos theta_i` of the oracle, linear RGB.
+    /// Returns `S cos theta_i` of the oracle, linear RGB.
     pub(super) fn oracle_value(&self, dir: DVec3) -> [f64; 3] {
         let cos_theta = dir.y.hypot(dir.z);
         self.of(Sampler::Published)
@@ -92,7 +92,7 @@ impl Case {
             .map(|s| s * cos_theta)
     }
 
-    /// The oracle's density of `sampler`, per steradian.
+    /// Returns the oracle's density of `sampler`, per steradian.
     pub(super) fn density(&self, sampler: Sampler, dir: DVec3) -> f64 {
         match sampler {
             Sampler::Uniform => f64::from(UNIFORM_PDF),
@@ -100,7 +100,7 @@ impl Case {
         }
     }
 
-    /// The next `lanes` (1 to 8) points of `source`, as samples; further lanes repeat no point and are to be ignored.
+    /// Draws samples from the next `lanes` (1 to 8) points of `source`. Further lanes use no point and are to be ignored.
     pub(super) fn draw(&self, sampler: Sampler, source: &mut impl XiSource, lanes: usize) -> Draws {
         let mut xi = [[0.5; 8]; 3];
         // A sampler that chooses no lobe takes the last two numbers.
@@ -121,7 +121,7 @@ impl Case {
         }
     }
 
-    /// `S cos theta_i`, linear RGB, and the density of `sampler`, at eight directions.
+    /// Returns `S cos theta_i`, linear RGB, and the density of `sampler`, at eight directions.
     pub(super) fn eval(&self, sampler: Sampler, dir: &[DVec3; 8]) -> ([[f64; 3]; 8], [f64; 8]) {
         let wi: [Vec3; 8] = dir.map(|d| d.as_vec3());
         let eval = self.of(sampler).scatter.eval_pdf8(&wi.into());
@@ -133,12 +133,12 @@ impl Case {
     }
 }
 
-/// The colours of eight lanes.
+/// Converts eight lanes to one colour per lane.
 fn colours(channels: &[f32x8; 3]) -> [[f64; 3]; 8] {
     array::from_fn(|lane| channels.map(|c| f64::from(c.as_array()[lane])))
 }
 
-/// Breakpoints at each bell, at the seam of `phi` and at the glint density's end.
+/// Returns an integrator with breakpoints at each bell, at the seam of `phi` and at the glint density's end.
 fn integrator(p: &HairDesc<f64>, wo: DVec3) -> SphereIntegrator {
     let theta_o = wo.x.atan2(wo.y.hypot(wo.z));
     let phi_o = wo.z.atan2(wo.y);

@@ -1,4 +1,4 @@
-//! One cell of each table.
+//! Cells of the tables, each of which one thread computes.
 
 use super::case::Case;
 use super::measure::{bias_z, is_tested, moments};
@@ -11,7 +11,7 @@ use hairis_instruments::light::{Constant, Light};
 use hairis_instruments::sequence::SequenceKind;
 use hairis_instruments::stats::{Estimate, Moments};
 
-/// A case under a light, the light's place in the order of reports, and the reference.
+/// Case under a light, with the light's place in the order of reports, and the reference.
 #[derive(Clone, Copy)]
 pub(super) struct Place<'a> {
     pub(super) config: &'a EfficiencyConfig<'a>,
@@ -21,7 +21,7 @@ pub(super) struct Place<'a> {
     pub(super) reference: &'a Reference,
 }
 
-/// The stream of a cell of `table` at a case.
+/// Returns seed and stream of a cell of `table` at a case.
 fn cell(config: &EfficiencyConfig<'_>, table: u64, case: &Case, rest: &[u64]) -> [u64; 2] {
     let mut indices = vec![table, case.model.index(), case.theta_o_deg.to_bits()];
     indices.extend_from_slice(rest);
@@ -123,7 +123,7 @@ impl Place<'_> {
             z: bias_z(&tally.moments, reference.estimate()),
             tested: match technique {
                 Technique::Bsdf(sampler) => is_tested(n, reference.predicted(sampler)),
-                // Samples from the light hit it however small it is.
+                // Samples from the light hit it, however small it is.
                 _ => true,
             },
         }
@@ -168,9 +168,10 @@ impl Place<'_> {
     }
 }
 
-/// Root mean squared relative error about `truth`, with its standard error by the delta method.
+/// Returns the root mean squared relative error about `truth`, with its standard error by the delta method.
 ///
-/// The squared errors' mean is `m2 + d^2` and their variance `m4 - m2^2 + 4 d m3 + 4 d^2 m2`, with central moments `m` and the bias `d`.
+/// The mean of the squared errors is `m2 + d^2` and their variance `m4 - m2^2 + 4 d m3 + 4 d^2 m2`, with central moments `m` and the bias
+/// `d`.
 fn rms_error(means: &Moments, truth: f64) -> Estimate {
     let n = means.count() as f64;
     let [m3, m4] = means.higher_moments();
@@ -185,7 +186,7 @@ fn rms_error(means: &Moments, truth: f64) -> Estimate {
     }
 }
 
-/// One width of the sweep, at a case made for it.
+/// Measures one width of the sweep, at a case made for that width.
 pub(super) fn sweep_row(
     config: &EfficiencyConfig<'_>,
     case: &Case,
@@ -223,7 +224,7 @@ pub(super) fn sweep_row(
     }
 }
 
-/// Distance of a measured V to the exact one in standard errors. Hair that scatters nothing has neither: 0.
+/// Returns the distance of a measured V to the exact one in standard errors. Hair that scatters nothing has neither, and gives 0.
 fn agreement(v: Estimate, exact: f64) -> f64 {
     if v.value.is_nan() && exact.is_nan() {
         0.0
@@ -232,7 +233,8 @@ fn agreement(v: Estimate, exact: f64) -> f64 {
     }
 }
 
-/// V under constant light against quadrature and, for the default hair, against its recorded figures. `v` is that of the independent row.
+/// Compares V under constant light with quadrature and, for the default hair, with its recorded figures. `v` is that of the independent
+/// row.
 pub(super) fn reference_v(
     config: &EfficiencyConfig<'_>,
     case: &Case,
@@ -259,7 +261,7 @@ pub(super) fn reference_v(
     }
 }
 
-/// V of the default hair to three decimals, recorded by another implementation.
+/// Returns V of the default hair to three decimals, as another implementation recorded it.
 pub(super) fn recorded_v(model: ModelKind, sampler: Sampler, theta_o_deg: f64) -> Option<f64> {
     let figures = match (model, sampler) {
         (ModelKind::Gaussian, Sampler::Uniform) => [0.706, 0.931, 2.268],
@@ -275,5 +277,5 @@ pub(super) fn recorded_v(model: ModelKind, sampler: Sampler, theta_o_deg: f64) -
         .map(|i| figures[i])
 }
 
-/// Deviation of the rounding to three decimals.
+/// Standard deviation of rounding to three decimals.
 const ROUNDING: f64 = 0.000_5 * 0.577_350_269_189_625_8;

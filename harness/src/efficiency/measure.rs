@@ -1,5 +1,5 @@
-//! From contributions to figures: blocks of samples, moments, z-scores. Light samples join those of the BSDF by the power heuristic
-//! (section 4 of the paper).
+//! Measurement, from contributions to figures: blocks of samples, moments, z-scores. Light samples join those of the BSDF by the power
+//! heuristic (section 4 of the paper).
 
 use super::case::Case;
 use super::{MIN_EFFECTIVE, Technique, intensity};
@@ -9,7 +9,7 @@ use hairis_instruments::light::{Light, LightSample, product};
 use hairis_instruments::sequence::{SequenceKind, XiSource};
 use hairis_instruments::stats::{Estimate, Moments};
 
-/// Moments of one cell, and the largest numbers seen on the way.
+/// Moments of one cell, with the largest weight and contribution among its samples.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CellMoments {
     /// Moments of single contributions, of pairs, or of the means of randomisations.
@@ -24,7 +24,7 @@ impl CellMoments {
         self.max_contribution = self.max_contribution.max(contribution);
     }
 
-    /// Largest contribution in means, 0 when there was none.
+    /// Returns the largest contribution in means, or 0 if there was none.
     pub(super) fn max_in_means(&self) -> f64 {
         if self.max_contribution > 0.0 {
             self.max_contribution / self.moments.mean()
@@ -34,12 +34,12 @@ impl CellMoments {
     }
 }
 
-/// Balance of the power heuristic for the technique of density `mine`; 0 where it has none.
+/// Returns the power heuristic's weight for the technique of density `mine`, or 0 if that density is 0.
 fn power_heuristic(mine: f64, other: f64) -> f64 {
     if mine == 0.0 {
         return 0.0;
     }
-    // The ratio rather than the squares: densities of narrow lights are large.
+    // The ratio is squared rather than the densities, because densities of narrow lights are large.
     let ratio = other / mine;
     1.0 / (1.0 + ratio * ratio)
 }
@@ -66,7 +66,7 @@ fn contributions(
             for lane in 0..lanes {
                 let (dir, pdf, weight) = (draws.dir[lane], draws.pdf[lane], draws.weight[lane]);
                 weights[lane] = intensity(weight);
-                // A discarded sample counts, and contributes 0; it may have no direction to look at. A NaN is let through, for the check to find.
+                // A discarded sample counts, and contributes 0; its direction may be undefined. A NaN passes, so that the check finds it.
                 if pdf != 0.0 {
                     let share = if both {
                         power_heuristic(pdf, light.pdf(dir))
@@ -98,7 +98,7 @@ fn contributions(
     }
 }
 
-/// Moments of the means of `n` contributions over `randomisations`; of single independent contributions for an `n` of 1.
+/// Returns the moments of the means of `n` contributions over `randomisations`, or of single independent contributions for an `n` of 1.
 pub(super) fn moments(
     case: &Case,
     technique: Technique,
@@ -146,13 +146,13 @@ pub(super) fn moments(
     tally
 }
 
-/// Bias of the mean in standard errors, the skewness of the samples removed to first order.
+/// Returns the bias of the mean in standard errors, with the skewness of the samples removed to first order.
 ///
-/// With `s = (mean - truth) / deviation` and skewness `k` of the samples, `sqrt(n) (s + k s^2/3 + k^2 s^3/27 + k/(6 n))`: monotone in `s`, and nearly normal
-/// where `sqrt(n) s` is not yet.
+/// With `s = (mean - truth) / deviation` and skewness `k` of the samples, `sqrt(n) (s + k s^2/3 + k^2 s^3/27 + k/(6 n))`. The score is
+/// monotone in `s`, and nearly normal even if `sqrt(n) s` is not yet.
 ///
 /// - Source: Hall 1992, On the removal of skewness by transformation, equation (3).
-/// - Domain: 0 when the mean is exactly the reference; infinite when it differs without any spread; NaN when a contribution was NaN.
+/// - Domain: 0 if the mean is exactly the reference; infinite if it differs without any spread; NaN if a contribution was NaN.
 pub(crate) fn bias_z(moments: &Moments, reference: Estimate) -> f64 {
     let mean = moments.mean_estimate();
     let difference = mean.value - reference.value;
@@ -173,8 +173,9 @@ pub(crate) fn bias_z(moments: &Moments, reference: Estimate) -> f64 {
     n.sqrt() * cubic * widened
 }
 
-/// Whether `samples` of variance `v` and of this skewness are worth enough for a test of their mean: if rare hits carry a part of it, by their number, which is
-/// `n / skewness^2` whatever the part; if they carry all of it, by `n / (1 + V)` as well. What is no number (black light, black hair) is no reason not to.
+/// Returns true if `samples` of variance `v` and of this skewness suffice for a test of their mean. If rare hits carry a part of the mean,
+/// their number decides, which is `n / skewness^2` whatever the part; if they carry all of it, `n / (1 + V)` decides as well. NaN (black
+/// light, black hair) does not prevent the test.
 pub(crate) fn is_tested(samples: usize, [v, skewness]: [f64; 2]) -> bool {
     let n = samples as f64;
     (v.is_nan() || n / (1.0 + v) >= MIN_EFFECTIVE)

@@ -1,4 +1,4 @@
-//! References of the estimates: integrals by quadrature over the oracle, and the variance they predict.
+//! References of the estimates: integrals by quadrature over the oracle, and the variance that they predict.
 
 use super::case::Case;
 use super::{Reference, ReferenceMethod, SAMPLERS, intensity, stream};
@@ -9,12 +9,12 @@ use hairis_instruments::quadrature::SphereIntegrator;
 use hairis_instruments::sequence::{Stratified, XiSource};
 use hairis_instruments::stats::{Estimate, Moments};
 
-/// `numerator / pdf`, 0 where nothing is drawn: the contribution is 0 there too.
+/// Returns `numerator / pdf`, or 0 if the density is 0, because nothing is drawn there and the contribution is 0 too.
 fn over(numerator: f64, pdf: f64) -> f64 {
     if pdf > 0.0 { numerator / pdf } else { 0.0 }
 }
 
-/// The integral of `light * S cos theta_i` by the light's own quadrature, without the variances; whether it converged.
+/// Returns the integral of `light * S cos theta_i` by the light's own quadrature, without the variances, and whether it converged.
 fn mean_by_quadrature(case: &Case, light: &dyn Light) -> (Reference, bool) {
     let integral = light.integrate(
         &|dir| case.oracle_value(dir),
@@ -26,14 +26,14 @@ fn mean_by_quadrature(case: &Case, light: &dyn Light) -> (Reference, bool) {
     )
 }
 
-/// Second moment of a contribution when directions have a density, by the light's own quadrature.
+/// Returns the second moment of a contribution if directions have the given density, by the light's own quadrature.
 fn second_moment(
     case: &Case,
     light: &dyn Light,
     sphere: &SphereIntegrator,
     density: &dyn Fn(DVec3) -> f64,
 ) -> f64 {
-    // The light multiplies by its radiance, channel by channel: the brightest channel carries the integrand, divided by it.
+    // The light multiplies by its radiance, channel by channel, so the brightest channel carries the integrand divided by its radiance.
     let square = |dir: DVec3| {
         let radiance = light.radiance(dir);
         let y = intensity(product(radiance, case.oracle_value(dir)));
@@ -47,20 +47,21 @@ fn second_moment(
     light.integrate(&square, sphere).value.iter().sum()
 }
 
-/// Mean and variances by the light's own quadrature.
+/// Returns mean and variances by the light's own quadrature.
 #[cfg(not(test))]
 pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
     integrated(case, light)
 }
 
-/// Integrates each case under each light once: tests run the tables a dozen times, and these integrals would take most of their time.
+/// Returns mean and variances, integrating each case under each light once. Tests run the tables a dozen times, and these integrals would
+/// take most of their time.
 #[cfg(test)]
 pub(crate) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
     use std::collections::HashMap;
     use std::sync::{Arc, Mutex, OnceLock, PoisonError};
     type Known = Mutex<HashMap<String, Arc<OnceLock<Reference>>>>;
     static KNOWN: OnceLock<Known> = OnceLock::new();
-    // Whether results depend on the number of threads is a question of a test.
+    // The key has the number of threads, because a test checks that results do not depend on it.
     let key = format!("{} {case:?} {light:?}", rayon::current_num_threads());
     let mut known = KNOWN
         .get_or_init(Known::default)
@@ -75,8 +76,8 @@ fn integrated(case: &Case, light: &dyn Light) -> Reference {
     let (mean, _) = mean_by_quadrature(case, light);
     let v = SAMPLERS.map(|sampler| {
         let mut sphere = case.sphere(sampler).clone();
-        // A light that integrates over itself has edges where a matched density jumps: twenty times as many take the
-        // area light 6 s and change its figure by 2e-6. Lights that cover the sphere converge long before.
+        // A light that integrates over itself has edges along the jumps of a matched density. Twenty times as many panels take the area
+        // light 6 s and change its figure by 2e-6. Lights that cover the sphere converge long before.
         sphere.tolerance.max_panels = 2_000;
         let second = second_moment(case, light, &sphere, &|dir| case.density(sampler, dir));
         second / (mean.value * mean.value) - 1.0
@@ -84,7 +85,7 @@ fn integrated(case: &Case, light: &dyn Light) -> Reference {
     Reference { v, ..mean }
 }
 
-/// V of directions whose density is proportional to the mean of RGB of `S cos theta_i`, by the light's own quadrature.
+/// Returns V of directions whose density is proportional to the mean of RGB of `S cos theta_i`, by the light's own quadrature.
 #[cfg(test)]
 pub(crate) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
     let hair = |dir| intensity(case.oracle_value(dir));
@@ -94,9 +95,9 @@ pub(crate) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
     second / mean_by_quadrature(case, light).0.value.powi(2) - 1.0
 }
 
-/// V of one ray of direct light by one-sample MIS, and that of a ray from `n + n` candidates times `n`, by the light's own
-/// quadrature. With h = f / (p + q), of the densities of the sampler and of the light, the estimate from candidates is the mean
-/// of `n` values of h drawn by p plus that of `n` drawn by q.
+/// Returns V of one ray of direct light by one-sample MIS, and V of a ray from `n + n` candidates times `n`, by the light's own quadrature.
+/// With h = f / (p + q), of the densities of the sampler and of the light, the estimate from candidates is the mean of `n` values of h
+/// drawn by p plus that of `n` drawn by q.
 #[cfg(test)]
 pub(crate) fn ray_v(case: &Case, light: &dyn Light, sampler: Sampler) -> [f64; 2] {
     let both = |dir: DVec3| case.density(sampler, dir) + light.pdf(dir);
@@ -122,10 +123,10 @@ pub(crate) fn ray_v(case: &Case, light: &dyn Light, sampler: Sampler) -> [f64; 2
 /// Strata of a pass, across and down.
 const STRATA: [usize; 2] = [64, 64];
 
-/// Directions of a pass.
+/// Number of directions in a pass.
 const PASS: usize = STRATA[0] * STRATA[1];
 
-/// The integral of `y` over the sphere, by stratified passes over directions drawn from a light.
+/// Returns the integral of `y` over the sphere, by stratified passes over directions drawn from a light.
 pub(crate) fn stratified(
     light: &dyn Light,
     [seed, stream]: [u64; 2],
@@ -143,12 +144,14 @@ pub(crate) fn stratified(
     means.mean_estimate()
 }
 
-/// Mean and variances under an environment map: the mean by quadrature while the map has at most `max_texels`, all else by a stratified run over the oracle.
+/// Returns mean and variances under an environment map. The mean is by quadrature if the map has at most `max_texels`; all else is by a
+/// stratified run over the oracle.
 ///
-/// Quadrature texel by texel does not resolve lobes much narrower than a texel: unless it converges, or its error is below
-/// that of the run, the mean is that of the run as well.
+/// Quadrature texel by texel does not resolve lobes much narrower than a texel. Unless it converges, or its error is below that of the run,
+/// the mean is that of the run as well.
 ///
-/// The run draws from the map, `passes` randomisations of 64 x 64 strata; only the map's own sampling is shared with what it is a reference for.
+/// The run draws from the map, in `passes` randomisations of 64 x 64 strata. It shares only the map's own sampling with the estimates that
+/// it is a reference for.
 pub(super) fn of_environment(
     case: &Case,
     map: &Environment,
@@ -200,10 +203,10 @@ pub(super) fn of_environment(
     }
 }
 
-/// The integral of `S cos theta_i` and V under constant light, by quadrature.
+/// Integral of `S cos theta_i` and V under constant light, by quadrature.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ExactVariance {
-    /// The integral of the mean of RGB.
+    /// Integral of the mean of RGB.
     pub(super) mean: Estimate,
     /// V of the mean of RGB, and of the luminance of Rec. 709.
     pub(super) v: [f64; 2],
@@ -212,7 +215,7 @@ pub(super) struct ExactVariance {
     pub(super) converged: bool,
 }
 
-/// `V = E[f^2] / E[f]^2 - 1` with `f = S cos theta_i / pdf`, for both numbers of a colour at once, from the oracle.
+/// Computes `V = E[f^2] / E[f]^2 - 1` with `f = S cos theta_i / pdf`, for both numbers of a colour at once, from the oracle.
 pub(super) fn exact_variance(case: &Case, sampler: Sampler) -> ExactVariance {
     let r = case.sphere(sampler).integrate_direction(|dir| {
         let rgb = case.oracle_value(dir);

@@ -1,4 +1,4 @@
-//! The tables, as plain data: what reports print and JSON keeps.
+//! Tables as plain data, which reports print and JSON keeps.
 
 use super::{Budget, EachSampler, ModelKind, SAMPLERS, SampleCosts, of_sampler};
 use crate::sampler::Sampler;
@@ -6,22 +6,22 @@ use hairis_instruments::sequence::SequenceKind;
 use hairis_instruments::stats::Estimate;
 use serde::Serialize;
 
-/// Every table of the comparison of sample efficiency.
+/// Tables of the comparison of sample efficiency.
 #[derive(Clone, Debug, Serialize)]
 pub struct EfficiencyResult {
-    /// Numbers of samples.
+    /// Settings that the tables depend on.
     pub settings: EfficiencySettings,
-    /// Under constant light: measured V against quadrature and against the recorded figures.
+    /// Measured V under constant light, against quadrature and against the recorded figures.
     pub reference_v: Vec<ReferenceV>,
     /// Variance and bias of every estimator under every light.
     pub rows: Vec<EfficiencyRow>,
-    /// Light sampling and multiple importance sampling.
+    /// Variance of light sampling and of multiple importance sampling.
     pub mis_rows: Vec<MisRow>,
-    /// Error against the number of samples.
+    /// Error of the mean against the number of samples.
     pub convergence: Vec<ConvergencePoint>,
     /// V against the width of the lobes, under constant light.
     pub beta_sweep: Vec<SweepRow>,
-    /// Whether the figures agree with their references.
+    /// Check of all figures against their references.
     pub check: Check,
 }
 
@@ -30,7 +30,7 @@ pub struct EfficiencyResult {
 pub struct EfficiencySettings {
     /// Seed of every stream.
     pub seed: u64,
-    /// Sample counts.
+    /// Numbers of samples per table.
     pub budget: Budget,
     /// Inclinations of the viewer, in degrees.
     pub theta_o_deg: [f64; 4],
@@ -40,41 +40,43 @@ pub struct EfficiencySettings {
     pub sun_deg: [f64; 2],
     /// Inclination of the viewer in the convergence table, in degrees.
     pub convergence_theta_o_deg: f64,
-    /// The lights, in the order of reports.
+    /// Names of the lights, in the order of reports.
     pub lights: Vec<String>,
-    /// Times of a sample, when given.
+    /// Times of a sample, if given.
     pub costs: Option<SampleCosts>,
 }
 
-/// Origin of a reference.
+/// Origin of a reference: quadrature, or a long run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ReferenceMethod {
     /// Deterministic quadrature over the double-precision oracle.
     Quadrature,
-    /// A long stratified run over the oracle, drawn from the light: for maps too large for quadrature.
+    /// Long stratified run over the oracle, drawn from the light, for maps too large for quadrature.
     StratifiedRun,
 }
 
-/// The value an estimator ought to have: the integral of `L S cos theta_i`, as the mean of RGB.
+/// Expected value of an estimator: the integral of `L S cos theta_i`, as the mean of RGB.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Reference {
-    /// The integral.
+    /// Integral of the mean of RGB.
     pub value: f64,
-    /// Its standard error: 0 for quadrature.
+    /// Standard error of the integral, 0 for quadrature.
     pub standard_error: f64,
     /// Bound estimate of the quadrature's error, absolute.
     pub quadrature_error: f64,
-    /// Its origin.
+    /// Origin of the integral.
     pub method: ReferenceMethod,
-    /// V of one independent sample, in the order of [`SAMPLERS`](super::SAMPLERS): by quadrature, or for an environment by a stratified run from the light, good to about a percent.
+    /// V of one independent sample, in the order of [`SAMPLERS`](super::SAMPLERS): by quadrature, or for an environment by a stratified run
+    /// from the light, good to about a percent.
     pub v: EachSampler<f64>,
-    /// Skewness of one independent sample, in the same order, from the same run; 0 for lights of one brightness, whose V suffices.
+    /// Skewness of one independent sample, in the same order, from the same run. The skewness is 0 for lights of one brightness, whose V
+    /// suffices.
     pub skewness: EachSampler<f64>,
 }
 
 impl Reference {
-    /// An integral by quadrature, without the variances.
+    /// Returns an integral by quadrature, without the variances.
     pub(super) const fn by_quadrature(value: f64, error: f64) -> Self {
         Self {
             value,
@@ -86,7 +88,7 @@ impl Reference {
         }
     }
 
-    /// The integral with its standard error.
+    /// Returns the integral with its standard error.
     pub(crate) const fn estimate(&self) -> Estimate {
         Estimate {
             value: self.value,
@@ -94,49 +96,49 @@ impl Reference {
         }
     }
 
-    /// V and skewness of one independent sample; not numbers for a sampler that is not compared.
+    /// Returns V and skewness of one independent sample, or NaN for a sampler that is not compared.
     pub(crate) fn predicted(&self, sampler: Sampler) -> [f64; 2] {
         [&self.v, &self.skewness].map(|each| of_sampler(each, sampler))
     }
 }
 
-/// V under constant light, three times.
+/// V under constant light, as measured, by quadrature, and as recorded.
 #[derive(Clone, Debug, Serialize)]
 pub struct ReferenceV {
-    /// The model.
+    /// Hair model of the row.
     pub model: ModelKind,
-    /// The sampler.
+    /// Sampler of the row.
     pub sampler: Sampler,
     /// Inclination of the viewer, in degrees.
     pub theta_o_deg: f64,
-    /// As measured with independent numbers.
+    /// V as measured with independent numbers.
     pub v: Estimate,
-    /// By quadrature: of the mean of RGB, as every figure here.
+    /// V by quadrature, for the mean of RGB, as all figures here.
     pub quadrature: f64,
-    /// Distance of the measured V to that, in standard errors.
+    /// Distance of the measured V to the quadrature, in standard errors.
     pub z_quadrature: f64,
-    /// By quadrature: of the luminance of Rec. 709, for comparison.
+    /// V by quadrature for the luminance of Rec. 709, for comparison.
     pub quadrature_luminance: f64,
-    /// For the default hair, the figure recorded by another implementation.
+    /// V of the default hair, as another implementation recorded it.
     pub recorded: Option<f64>,
-    /// Distance of the measured V to it, in standard errors; that of its rounding is added.
+    /// Distance of the measured V to the recorded one, in standard errors, which include that of rounding.
     pub z_recorded: Option<f64>,
 }
 
-/// One estimator under one light.
+/// Estimator under one light, with its variance and bias.
 #[derive(Clone, Debug, Serialize)]
 pub struct EfficiencyRow {
-    /// The model.
+    /// Hair model of the row.
     pub model: ModelKind,
-    /// The sampler.
+    /// Sampler of the directions.
     pub sampler: Sampler,
-    /// The numbers it consumed.
+    /// Kind of numbers that the sampler consumed.
     pub sequence: SequenceKind,
     /// Name of the light.
     pub light: String,
     /// Inclination of the viewer, in degrees.
     pub theta_o_deg: f64,
-    /// Samples `N` of the means whose variance V is defined by: 1 for independent numbers.
+    /// Samples `N` of each mean whose variance defines V; 1 for independent numbers.
     pub n: usize,
     /// Number of such means.
     pub randomisations: usize,
@@ -146,19 +148,19 @@ pub struct EfficiencyRow {
     pub ess_per_1000: Estimate,
     /// Samples for a relative error of 1%, `V / 1e-4`.
     pub samples_for_1_percent: Estimate,
-    /// `1 / (V seconds)`, when the time of a sample is known.
+    /// Efficiency `1 / (V seconds)`, if the time of a sample is known.
     pub efficiency: Option<Estimate>,
-    /// Largest mean of RGB of a weight `S cos theta_i / pdf`, whatever the light.
+    /// Largest weight `S cos theta_i / pdf`, as the mean of RGB, whatever the light.
     pub max_weight: f64,
     /// Largest contribution of a sample, in means.
     pub max_contribution: f64,
-    /// The mean of all samples.
+    /// Mean of all samples.
     pub mean: Estimate,
-    /// Its expected value.
+    /// Expected value of the mean.
     pub reference: Reference,
     /// Bias in standard errors, corrected for skewness.
     pub z: f64,
-    /// Whether there were enough effective samples for `z` to be a test, and for V to be trusted.
+    /// Whether there were enough effective samples for `z` to be a test, and for V to be reliable.
     pub tested: bool,
 }
 
@@ -166,16 +168,16 @@ pub struct EfficiencyRow {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Technique {
-    /// From the light alone.
+    /// Samples from the light alone.
     Light,
-    /// From the scattering function alone.
+    /// Samples from the scattering function alone.
     Bsdf(Sampler),
-    /// Equal numbers of samples from both, by the power heuristic of exponent 2.
+    /// Equal numbers of samples from both, combined by the power heuristic of exponent 2.
     Mis(Sampler),
 }
 
 impl Technique {
-    /// Every technique, in the order of reports.
+    /// Returns every technique, in the order of reports.
     pub fn all() -> impl Iterator<Item = Self> {
         [Self::Light]
             .into_iter()
@@ -183,7 +185,7 @@ impl Technique {
             .chain(SAMPLERS.map(Self::Mis))
     }
 
-    /// Name in reports.
+    /// Returns the name of the technique in reports.
     pub(crate) fn name(self) -> String {
         match self {
             Self::Light => "light only".to_owned(),
@@ -192,64 +194,64 @@ impl Technique {
         }
     }
 
-    /// Samples a contribution takes.
+    /// Returns the number of samples that a contribution takes.
     pub(crate) fn samples_each(self) -> usize {
         if matches!(self, Self::Mis(_)) { 2 } else { 1 }
     }
 }
 
-/// One way of drawing samples for one light, independent numbers.
+/// Technique of drawing samples for one light, with independent numbers.
 ///
-/// V is per sample of a budget shared by all techniques: `T Var(estimate) / mean^2` where the estimate took `T` samples in all. A technique alone spends all
-/// of them on itself; with both, `T / 2` go to either, so V is twice the relative variance of a pair.
+/// V is per sample of a budget shared by all techniques: `T Var(estimate) / mean^2` if the estimate took `T` samples in all. A technique
+/// alone spends the whole budget on itself; with both, `T / 2` go to either, so V is twice the relative variance of a pair.
 #[derive(Clone, Debug, Serialize)]
 pub struct MisRow {
-    /// The model.
+    /// Hair model of the row.
     pub model: ModelKind,
-    /// Technique.
+    /// Technique that draws the samples.
     pub technique: Technique,
-    /// Its name in reports.
+    /// Name of the technique in reports.
     pub name: String,
     /// Name of the light.
     pub light: String,
     /// Inclination of the viewer, in degrees.
     pub theta_o_deg: f64,
-    /// Samples a contribution took: 1, or 2 for a pair.
+    /// Samples that a contribution took: 1, or 2 for a pair.
     pub samples_each: usize,
     /// Number of contributions.
     pub n: usize,
     /// Relative variance per sample at an equal total number of samples.
     pub v: Estimate,
-    /// Samples for a relative error of 1%, of both kinds together.
+    /// Samples for a relative error of 1%, both kinds counted together.
     pub samples_for_1_percent: Estimate,
     /// Largest contribution, in means.
     pub max_contribution: f64,
-    /// The mean of all contributions.
+    /// Mean of all contributions.
     pub mean: Estimate,
-    /// Its expected value.
+    /// Expected value of the mean.
     pub reference: Reference,
     /// Bias in standard errors, corrected for skewness.
     pub z: f64,
-    /// Whether there were enough effective samples for `z` to be a test, and for V to be trusted.
+    /// Whether there were enough effective samples for `z` to be a test, and for V to be reliable.
     pub tested: bool,
 }
 
-/// Error of a mean of `n` samples.
+/// Error of a mean of `n` samples, against the reference.
 #[derive(Clone, Debug, Serialize)]
 pub struct ConvergencePoint {
-    /// The model.
+    /// Hair model of the point.
     pub model: ModelKind,
-    /// The sampler.
+    /// Sampler of the directions.
     pub sampler: Sampler,
-    /// The numbers it consumed.
+    /// Kind of numbers that the sampler consumed.
     pub sequence: SequenceKind,
     /// Name of the light.
     pub light: String,
     /// Inclination of the viewer, in degrees.
     pub theta_o_deg: f64,
-    /// Samples of a mean.
+    /// Number of samples per mean.
     pub n: usize,
-    /// Randomisations.
+    /// Number of randomisations.
     pub randomisations: usize,
     /// Root of the mean squared relative error against the reference.
     pub rms: Estimate,
@@ -259,48 +261,48 @@ pub struct ConvergencePoint {
     pub tested: bool,
 }
 
-/// One width of the sweep, constant light, independent numbers.
+/// Row of the sweep: one width under constant light, with independent numbers.
 #[derive(Clone, Debug, Serialize)]
 pub struct SweepRow {
-    /// The model.
+    /// Hair model of the row.
     pub model: ModelKind,
-    /// The sampler.
+    /// Sampler of the directions.
     pub sampler: Sampler,
     /// Width of R, in degrees.
     pub beta_r_deg: f32,
     /// Inclination of the viewer, in degrees.
     pub theta_o_deg: f64,
-    /// Samples.
+    /// Number of samples.
     pub n: usize,
     /// Relative variance per sample, as measured.
     pub v: Estimate,
-    /// Value by quadrature.
+    /// V by quadrature.
     pub quadrature: f64,
-    /// Distance of the two, in standard errors.
+    /// Distance of the measured V to the quadrature, in standard errors.
     pub z_quadrature: f64,
     /// Bias of the mean in standard errors, corrected for skewness.
     pub z: f64,
 }
 
-/// All z-scores against one bound.
+/// Check of all z-scores against one bound.
 #[derive(Clone, Debug, Serialize)]
 pub struct Check {
     /// Number of figures compared with a reference.
     pub tests: usize,
     /// Number of figures with too few effective samples for a comparison.
     pub untested: usize,
-    /// Chance of a false alarm over all of them.
+    /// Chance of a false alarm over all tests together.
     pub false_alarm: f64,
-    /// Bound on `|z|`: the chance is shared out over the tests by Sidak's formula.
+    /// Bound on `|z|`, for which the chance is shared out over the tests by Sidak's formula.
     pub bound: f64,
-    /// Largest `|z|`; infinite when one was no number.
+    /// Largest `|z|`, infinite if any was NaN.
     pub largest_z: f64,
     /// One line for each figure beyond the bound.
     pub failures: Vec<String>,
 }
 
 impl Check {
-    /// Whether every figure agrees with its reference. When not, `compare` ends with exit code 1.
+    /// Returns true if every figure agrees with its reference. Otherwise `compare` ends with exit code 1.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.failures.is_empty()

@@ -1,4 +1,4 @@
-//! All the tables, cell by cell.
+//! Run of all the tables, cell by cell.
 
 use super::case::Case;
 use super::cells::{self, Place};
@@ -18,13 +18,13 @@ use hairis_instruments::sequence::SequenceKind;
 use hairis_instruments::stats::{Estimate, sidak};
 use statrs::function::erf::erfc_inv;
 
-/// The largest V of an environment for which convergence is shown.
+/// Largest V of an environment for which convergence is shown.
 const CONVERGENCE_V: f64 = 100.0;
 
-/// Computes every table. `progress` is called from the workers with the number of cells done and of all cells.
+/// Computes every table. Workers call `progress` with the number of cells done and of all cells.
 ///
 /// # Errors
-/// When the parameters of the sweep are refused, which valid parameters of the run exclude.
+/// Returns an error if the parameters of the sweep are rejected, which does not happen if those of the run are valid.
 pub fn run(
     config: &EfficiencyConfig<'_>,
     progress: &(dyn Fn(usize, usize) + Sync),
@@ -96,7 +96,7 @@ pub fn run(
     };
     let mut converging = under(&[Constant::NAME, Rectangle::NAME]);
     converging.retain(|place| place.case.theta_o_deg == CONVERGENCE_THETA_O_DEG);
-    // Under a sun that few samples ever see, a curve of convergence shows which of its points have seen it.
+    // Under a sun that few samples hit, a curve of convergence would only show which of its points have hit it.
     let is_steady = |place: &Place<'_>| place.reference.v.iter().all(|v| *v < CONVERGENCE_V);
     if !converging
         .iter()
@@ -156,7 +156,7 @@ pub fn run(
     Ok(result)
 }
 
-/// Every pair of an `a` and a `b`, the latter running faster.
+/// Returns every pair of an `a` and a `b`, the latter running faster.
 fn product<A: Copy, B: Copy>(a: &[A], b: &[B]) -> Vec<(A, B)> {
     let mut pairs = Vec::with_capacity(a.len() * b.len());
     a.iter()
@@ -164,7 +164,7 @@ fn product<A: Copy, B: Copy>(a: &[A], b: &[B]) -> Vec<(A, B)> {
     pairs
 }
 
-/// Holds every z-score against the bound that all of them together pass with probability `1 - FALSE_ALARM`.
+/// Checks every z-score against the bound that all of them together keep with probability `1 - FALSE_ALARM`.
 pub(super) fn check(result: &EfficiencyResult) -> Check {
     let name = |model: ModelKind, sampler: Sampler| format!("{} {}", model.name(), sampler.name());
     let (mut scores, mut untested) = (Vec::new(), 0);
@@ -238,7 +238,7 @@ pub(super) fn check(result: &EfficiencyResult) -> Check {
 }
 
 impl Check {
-    /// Holds scores, each with its place, against the bound that all of them together pass with probability `1 - FALSE_ALARM`.
+    /// Checks scores, each with its place, against the bound that all of them together keep with probability `1 - FALSE_ALARM`.
     pub(crate) fn of(scores: &[(f64, String)], untested: usize) -> Self {
         let bound = z_bound(sidak(FALSE_ALARM, scores.len()));
         let size = |z: f64| if z.is_nan() { f64::INFINITY } else { z.abs() };
@@ -257,7 +257,7 @@ impl Check {
     }
 }
 
-/// The `|z|` of a two-sided p-value.
+/// Returns the `|z|` of a two-sided p-value.
 pub(crate) fn z_bound(p: f64) -> f64 {
     SQRT_2 * erfc_inv(p)
 }

@@ -1,4 +1,4 @@
-//! Against quadrature and the recorded table; determinism; hair and lights that scatter nothing.
+//! Tests against quadrature and the recorded table, of determinism, and of hair and lights that scatter nothing.
 
 use super::case::Case;
 use super::cells::recorded_v;
@@ -12,7 +12,7 @@ use hairis_instruments::sequence::{Independent, SequenceKind, XiSource};
 use hairis_instruments::stats::{Estimate, Moments};
 use std::sync::{Mutex, OnceLock};
 
-/// Everything, small enough to be computed in seconds.
+/// Budget that covers every table and is small enough to be computed in seconds.
 const SMALL: Budget = Budget {
     independent: 20_000,
     correlated: 16,
@@ -102,7 +102,7 @@ fn measured_variance_is_that_of_quadrature_and_of_the_table() {
         );
         let v = tally.moments.relative_variance();
         let exact = exact_variance(&case, sampler).v[0];
-        // 36 comparisons: 3.5 standard errors is 1.7% of false alarms over all of them.
+        // 36 comparisons: a bound of 3.5 standard errors gives 1.7% of false alarms over all of them.
         assert!(
             v.z_score(exact).abs() < 3.5,
             "{:?} {sampler:?} {}: {v:?}, quadrature {exact}",
@@ -144,7 +144,7 @@ fn every_estimator_agrees_with_quadrature() {
                     technique.name()
                 );
                 if let Technique::Bsdf(sampler) = technique {
-                    // The second moment by quadrature too, where hits are not rare.
+                    // The second moment is compared with quadrature too, unless hits are rare.
                     let v = tally.moments.relative_variance();
                     let exact = reference.predicted(sampler)[0];
                     assert!(
@@ -183,7 +183,7 @@ fn the_sun_is_for_light_sampling_and_the_rest_for_both() {
     assert!(v(Technique::Mis(Sampler::Published)) < 3.0);
 }
 
-/// The small run and its calls of the progress report, computed once, on two threads.
+/// Returns the small run and its calls of the progress report, computed once, on two threads.
 fn small_run() -> &'static (EfficiencyResult, Vec<(usize, usize)>) {
     static RUN: OnceLock<(EfficiencyResult, Vec<(usize, usize)>)> = OnceLock::new();
     RUN.get_or_init(|| {
@@ -232,7 +232,7 @@ fn a_small_run_has_every_row_and_passes_its_check() {
     );
     let check = &result.check;
     assert!(check.passed(), "{check:#?}");
-    // The sun at these sizes is too small to be tested by the scattering function alone.
+    // The sun is too rarely hit at these sizes to be tested by the scattering function alone.
     let sun = |r: &&EfficiencyRow| r.light == "sun";
     assert!(
         result.rows.iter().filter(sun).all(|r| !r.tested),
@@ -276,7 +276,7 @@ fn efficiency_is_one_over_variance_and_time() {
 #[test]
 fn a_wrong_mean_fails_the_check() {
     let mut result = small_run().0.clone();
-    // The sampler's weights too large by 5%.
+    // As if the sampler's weights were too large by 5%.
     let row = result
         .rows
         .iter_mut()
@@ -299,7 +299,7 @@ fn a_wrong_mean_fails_the_check() {
 
 #[test]
 fn maps_of_few_texels_raise_no_alarm() {
-    // Four nodes do not resolve a lobe inside a texel of 45 degrees and more: the quadrature must not count as exact.
+    // Four nodes do not resolve a lobe inside a texel of 45 degrees and more, so the quadrature must not count as exact.
     let gradient = |width: u16, height: u16| {
         let pixels = (0..width * height)
             .map(|k| [1.0, 0.5 + f32::from(k), 2.0])
@@ -383,7 +383,7 @@ fn black_hair_and_black_maps_are_no_failures() {
 
 #[test]
 fn the_bias_score_is_normal_where_hits_are_rare() {
-    // Poisson hits, 25 expected a run: a plain z exceeds 3 below the mean three times too often, this one does not.
+    // Poisson hits, 25 expected per run: a plain z exceeds 3 below the mean three times too often, this score does not.
     let reference = Estimate::exact(0.0025);
     let mut xi = Independent::new(51, 0);
     let mut plain = 0;
@@ -404,7 +404,7 @@ fn the_bias_score_is_normal_where_hits_are_rare() {
 
 #[test]
 fn ten_hits_that_carry_a_fifth_of_the_mean_are_too_few() {
-    // 0.8, and once in 10^4 samples 2000 more: worth 249 samples of 10^5, and ten hits.
+    // The value is 0.8, and once in 10^4 samples 2000 more: 10^5 samples are worth 249, and have ten hits.
     let (v, skewness) = (0.04 / 1e-4, 100.0);
     assert!(!is_tested(100_000, [v, skewness]), "ten hits are expected");
     assert!(is_tested(1_000_000, [v, skewness]), "a hundred are");
@@ -416,9 +416,9 @@ fn a_full_run_under_the_sky_passes_its_check() {
     let sky = Sky::default().environment();
     let result = run(&EfficiencyConfig::new(2, false, &sky), &|_, _| ()).expect("valid");
     assert!(result.check.passed(), "{:#?}", result.check);
-    // Directions from the BSDF meet a sun off the highlights once in a thousand samples or less: V is up to 40,000, and two
-    // million samples are worth 50. Those rows are predicted instead. Uniform directions test every light, and the others test
-    // those that are wider than a sun.
+    // Directions from the BSDF hit a sun off the highlights once in a thousand samples or less: V is up to 40,000, and two million samples
+    // are worth 50. Those rows are predicted instead. Uniform directions test every light, and the others test those that are wider than a
+    // sun.
     let independent: Vec<_> = result
         .rows
         .iter()

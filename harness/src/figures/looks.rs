@@ -14,20 +14,20 @@ fn direction(theta: f64, phi: f64) -> Vec3 {
     fibre_direction(theta, phi).as_vec3()
 }
 
-/// Cells of a map.
+/// Cells of a map, in inclination and in azimuth.
 const CELLS: (u16, u16) = (60, 120);
 
-/// S of the published model or of a variant, the mean of RGB.
+/// Returns S of the published model or of a variant, as the mean of RGB.
 fn scatter(material: impl Into<AnyMaterial>, theta_o: f64) -> impl Fn(Vec3) -> f64 {
     let bsdf = material.into().prepare(direction(theta_o, 0.0));
     move |wi| bsdf.eval(wi).into_iter().map(f64::from).sum::<f64>() / 3.0
 }
 
-/// S around the fibre and along it, of the Gaussian model and of Cauchy models by name, seen from the inclination
-/// `theta_o` (radians).
+/// Draws S around the fibre and along it, for the Gaussian model and for the named Cauchy models, seen from the inclination `theta_o`
+/// (radians).
 ///
-/// Around it, `wi` turns on the cone of the mirror direction, `theta_i = -theta_o`, which is the normal plane when
-/// `theta_o` is 0; along it, `wi` turns in the plane of incidence, that of the fibre and the viewer.
+/// Around the fibre, `wi` turns on the cone of the mirror direction, `theta_i = -theta_o`, which is the normal plane if `theta_o` is 0.
+/// Along the fibre, `wi` turns in the plane of incidence, which holds the fibre and the viewer.
 #[must_use]
 pub fn polar(params: &HairParams, theta_o: f64, variants: &[(&str, Cauchy)]) -> Drawing {
     const STEPS: i32 = 1440;
@@ -56,7 +56,7 @@ pub fn polar(params: &HairParams, theta_o: f64, variants: &[(&str, Cauchy)]) -> 
             arrow,
         }
     };
-    // 90° is the fibre's tip, 0° the side of the viewer.
+    // The fibre's tip is at 90°, and the side of the viewer at 0°.
     let along = |angle: f64| {
         let (sin, cos) = angle.sin_cos();
         direction(
@@ -93,8 +93,8 @@ pub fn polar(params: &HairParams, theta_o: f64, variants: &[(&str, Cauchy)]) -> 
     Drawing::new("polar", chart, caption)
 }
 
-/// Maps of S of the Gaussian model, of a Cauchy model and of what the second has more, seen from the inclination `theta_o`
-/// (radians) at azimuth 0; then of what it has more of `S cos theta_i` after the blur of [`difference`](crate::difference).
+/// Draws maps of S of the Gaussian model, of a Cauchy model and of the second less the first, seen from the inclination `theta_o` (radians)
+/// at azimuth 0. The last map shows the same difference of `S cos theta_i` after the blur of [`difference`](crate::difference).
 #[must_use]
 pub fn maps(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> [Drawing; 4] {
     let a = scatter(Material::new(&Published(Gaussian), params), theta_o);
@@ -111,7 +111,7 @@ pub fn maps(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> [Drawing; 4] {
         .fold(0.0, f64::max);
     let degrees = theta_o.to_degrees();
     let heat = |name: &str, model: &str, grid, remark: &str| {
-        // Values below the range take its first colour.
+        // Values below the range get its first colour.
         let value = Axis::log("S (1/sr)").range(most / 1e3, most);
         let map = heat_map(
             &format!("S, {model} model, θₒ = {degrees:.0}°"),

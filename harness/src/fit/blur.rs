@@ -1,16 +1,16 @@
-//! Blur of values that are given at directions.
+//! Blur of values that are given at directions of a quadrature.
 
 use crate::difference::SIGMA_DEG;
 use core::f64::consts::{PI, TAU};
 use hairis_instruments::direction::direction;
 
-/// Deviations beyond which the blur ends: all but 0.03% of the density is within.
+/// Number of deviations at which the blur ends. All but 0.03% of the density is within.
 const DEVIATIONS: f64 = 4.0;
 
-/// The von Mises-Fisher density of [`SIGMA_DEG`] around some places of the sphere, at the directions of a quadrature.
+/// Blur by the von Mises-Fisher density of [`SIGMA_DEG`] around some places of the sphere, for values at the directions of a quadrature.
 #[derive(Clone, Debug)]
 pub(super) struct Blur {
-    /// For each place the directions near it, and their weights times the density.
+    /// Directions near each place, and their weights times the density.
     near: Vec<Vec<(usize, f64)>>,
 }
 
@@ -20,7 +20,7 @@ impl Blur {
     /// Solid angle of a place.
     pub(super) const WEIGHT: f64 = 4.0 * PI / Self::PLACES as f64;
 
-    /// Blur of values at the directions `wi`, by component, whose integrals have these weights.
+    /// Prepares the blur of values at the directions `wi`, by component, whose integrals have these weights.
     pub(super) fn new(wi: &[Vec<f32>; 3], weights: &[[f64; 2]]) -> Self {
         let kappa = SIGMA_DEG.to_radians().powi(2).recip();
         // The density: kappa / (4 pi sinh kappa) exp(kappa cos), without its overflow.
@@ -48,7 +48,7 @@ impl Blur {
         }
     }
 
-    /// Blurred values, by place.
+    /// Returns the blurred values, by place.
     pub(super) fn values(&self, of: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let blurred = |near: &Vec<(usize, f64)>| {
             let mut sum = [0.0; 3];
@@ -62,7 +62,7 @@ impl Blur {
         self.near.iter().map(blurred).collect()
     }
 
-    /// Derivatives by the values at so many directions, given those by the blurred values.
+    /// Returns the derivatives by the values at so many directions, given those by the blurred values.
     pub(super) fn derivatives(&self, by_blurred: &[[f64; 3]], directions: usize) -> Vec<[f64; 3]> {
         let mut sums = vec![[0.0; 3]; directions];
         for (near, slopes) in self.near.iter().zip(by_blurred) {

@@ -1,4 +1,4 @@
-//! The distance and its derivatives as a problem of an optimiser.
+//! Objective of the optimiser: the distance of two models and its derivatives.
 
 use super::points::Points;
 use super::variables::Variables;
@@ -13,16 +13,16 @@ use hairis_gradients::{Differentiable, GradColumns, Gradients, Visitor, Weights,
 use hairis_materials::material::single;
 use hairis_variants::{ModelId, Parameters, Values};
 
-/// Iterations after which the optimiser ends.
+/// Number of iterations after which the optimiser ends.
 const ITERATIONS: u64 = 600;
-/// Pairs of steps that the optimiser keeps.
+/// Number of pairs of steps that the optimiser keeps.
 const HISTORY: usize = 20;
 /// Relative reduction of the distance below which the optimiser ends.
 const REDUCTION: f64 = 1e-14;
-/// Share of the mean below which L1 is smooth.
+/// Share of the mean below which L1 is smoothed.
 const SMOOTH: f64 = 0.01;
 
-/// Finds the nearest values from a start. Returns them, and the number of iterations.
+/// Finds the nearest values from a start, and returns them with the number of iterations.
 pub(super) fn minimise(
     model: ModelId,
     start: &Values,
@@ -60,7 +60,7 @@ pub(super) fn minimise(
     }
 }
 
-/// Norm of the look, and the magnitude below which L1 is smooth.
+/// Norm of the look, and the magnitude below which L1 is smoothed.
 #[derive(Clone, Copy, Debug)]
 struct Scale {
     norm: f64,
@@ -111,7 +111,7 @@ impl Rows {
     }
 }
 
-/// The distance of a model from a look.
+/// Distance of a model from a look, as the optimiser's problem.
 struct Distance<'a> {
     model: ModelId,
     points: &'a Points,
@@ -124,7 +124,7 @@ struct Distance<'a> {
 }
 
 impl Distance<'_> {
-    /// The distance, and the weights of S: its derivatives by the values of every row.
+    /// Returns the distance. Appends the weights of S, which are its derivatives by the values of every row, to `weights` if given.
     fn distance(
         &self,
         values: &Values,
@@ -168,7 +168,7 @@ impl Distance<'_> {
     }
 }
 
-/// Derivatives by the numbers of a model's fields.
+/// Visitor that returns the derivatives by the numbers of a model's fields.
 struct ByNumbers<'a> {
     rows: &'a Rows,
     values: &'a Values,
@@ -179,7 +179,7 @@ impl Visitor for ByNumbers<'_> {
     type Output = Result<Values<f64>, ParamError>;
 
     fn visit<M: Differentiable>(self) -> Self::Output {
-        // The first entry of each name: others have the same S.
+        // Only the first entry of each name, because others have the same S.
         if const { ModelId::of::<M>().is_default() } {
             let gradients = Gradients::<M>::new(&M::Params::from_values(self.values)?);
             let Rows { wo, h, wi } = self.rows;

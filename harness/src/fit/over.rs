@@ -1,4 +1,4 @@
-//! Fits to many looks, as a table.
+//! Fits to many looks, with their residuals as a table.
 
 use super::{FitConfig, Look, Residual, first_start, fit, residuals};
 use crate::difference::Summary;
@@ -9,18 +9,18 @@ use hairis_instruments::progress::Progress;
 use hairis_instruments::table::{Table, number};
 use hairis_variants::{ModelId, Parameters, Values};
 
-/// A look that was fitted, from the inclinations of the fit.
+/// Fit to one of many looks, with its residuals from the inclinations of the fit.
 #[derive(Clone, Debug)]
 pub struct Refit {
     /// Name of the look.
     pub name: String,
-    /// The fitted values.
+    /// Values that were found.
     pub values: Values,
-    /// Distance of all views of each of the [`rules`](super::rules).
+    /// Distance over all views of each of the [`rules`](super::rules).
     pub distances_of_rules: Vec<f64>,
-    /// Distance of all views.
+    /// Distance over all views.
     pub distance: f64,
-    /// Error of that distance.
+    /// Error of the distance.
     pub error: f64,
     /// Residuals of the first start, by view.
     pub before: Vec<Residual>,
@@ -28,11 +28,11 @@ pub struct Refit {
     pub after: Vec<Residual>,
 }
 
-/// The hair of a grid, each once: `from` with its values, and a name of its axes.
+/// Returns each hair of a grid once: `from` with the values of the hair, and a name that states its axes.
 ///
 /// # Errors
 ///
-/// Never for [`Grid::FULL`] and [`Grid::QUICK`].
+/// Returns no error for [`Grid::FULL`] and [`Grid::QUICK`], whose hair is accepted.
 pub fn hair_of(grid: Grid, from: ModelId) -> Result<Vec<(String, Look)>, ParamError> {
     let views = grid.theta_o_deg.len();
     let cells = grid.cells().step_by(views.max(1));
@@ -53,11 +53,11 @@ pub fn hair_of(grid: Grid, from: ModelId) -> Result<Vec<(String, Look)>, ParamEr
     cells.map(look).collect()
 }
 
-/// Fits `to` to every look.
+/// Fits `to` to every look, on all cores, and measures the residuals.
 ///
 /// # Errors
 ///
-/// If a value of a look is out of its range.
+/// Returns an error if a value of a look is out of its range.
 pub fn refits(
     looks: &[(String, Look)],
     to: ModelId,
@@ -83,7 +83,7 @@ pub fn refits(
     progress.map(looks, refit).into_iter().collect()
 }
 
-/// Rows of the refits: a look and a view each.
+/// Returns the refits as columns, with one row per look and view.
 ///
 /// | column | content |
 /// |---|---|
@@ -116,7 +116,8 @@ pub fn columns(refits: &[Refit]) -> Columns {
     value_columns(columns, &values.collect::<Vec<_>>())
 }
 
-/// Adds the numbers of the fields of the first of some values, of one model: `field` or `field[i]`.
+/// Adds a column for each number of the fields, `field` or `field[i]`. All values are of one model, and the first of them decides which
+/// fields there are.
 pub(crate) fn value_columns(mut columns: Columns, all: &[Values]) -> Columns {
     let Some(first) = all.first() else {
         return columns;
@@ -136,10 +137,10 @@ pub(crate) fn value_columns(mut columns: Columns, all: &[Values]) -> Columns {
     columns
 }
 
-/// A distance by name.
+/// Name of a distance, and the function that returns it.
 type NamedDistance = (&'static str, fn(&Residual) -> f64);
 
-/// Medians and worst of the distances, over looks and views.
+/// Returns a table of the medians and the worst of the distances, over looks and views.
 pub fn table(title: &str, refits: &[Refit]) -> Table {
     let mut table = Table::new(title).texts(["distance"]).numbers([
         "median at the start",

@@ -1,4 +1,4 @@
-//! The page of a fit: values, residuals by view and lobe, maps of the difference.
+//! Page of a fit: values, residuals by view and lobe, and maps of the difference.
 
 use super::{Fit, Look, Norm, Residual};
 use crate::materials::NamedMaterial;
@@ -35,7 +35,7 @@ impl Shown<'_> {
         )
     }
 
-    /// The page.
+    /// Returns the page with all sections.
     pub(crate) fn report(&self) -> Result<Report, Error> {
         let (name, to) = (&self.from.name, self.fit.found.model.name());
         Ok(Report {
@@ -53,7 +53,7 @@ impl Shown<'_> {
         })
     }
 
-    /// Values of the first start and of the end.
+    /// Returns the table of values at the first start and at the end.
     fn values(&self) -> Table {
         let mut table = Table::new("Values")
             .texts(["field"])
@@ -79,7 +79,7 @@ impl Shown<'_> {
         table
     }
 
-    /// Distance of every start and end.
+    /// Returns the table of distances at every start and end.
     fn starts(&self) -> Table {
         let headers = ["start", "distance there", "at the end", "iterations"];
         let mut table = Table::new("Starts").numbers(headers);
@@ -146,7 +146,7 @@ impl Shown<'_> {
         ]
     }
 
-    /// Maps of the difference of `S cos theta_i` at 45 degrees, before and after, in the same colours.
+    /// Draws maps of the difference of `S cos theta_i` at 45 degrees, before and after the fit, in the same colours.
     fn maps(&self) -> Result<[Drawing; 2], Error> {
         const THETA_O_DEG: f64 = 45.0;
         let wo = fibre_direction(THETA_O_DEG.to_radians(), 0.0).as_vec3();

@@ -1,4 +1,4 @@
-//! Points of the sphere with weights, and models at them.
+//! Points of the sphere with weights, at which models are compared.
 
 use super::blur::Blur;
 use super::{FitConfig, Look, Norm};
@@ -11,43 +11,44 @@ use hairis_instruments::sequence::{Halton, XiSource, to_unit_f32};
 use hairis_variants::{AnyBsdf, AnyMaterial, ModelId, Values};
 use std::borrow::Cow;
 
-/// Offsets across the fibre over which models of the near field are averaged: middles of as many equal parts.
+/// Number of offsets across the fibre over which near-field models are averaged; they are the middles of as many equal parts.
 const OFFSETS: u16 = 8;
 
-/// Least weight of a view, as a share of the largest: residuals divide by the weight.
+/// Least weight of a view, as a share of the largest. It is above 0 because residuals divide by the weight.
 const LEAST_WEIGHT: f64 = 1e-100;
 
-/// Streams of a view.
+/// Number of random streams per view.
 const STREAMS: u64 = 4;
 
 /// Values, and their weights with the cosine of L2.
 type Compared<'a> = (Cow<'a, [[f64; 3]]>, Cow<'a, [[f64; 2]]>);
 
-/// Directions of every view with their weights, and a look at them.
+/// Directions of every view with their weights, and the values of a look at them.
 #[derive(Clone, Debug)]
 pub struct Points {
-    /// Views, each towards the viewer.
+    /// Direction to the viewer of each view.
     pub(super) views: Vec<Vec3>,
-    /// Offsets of the hits.
+    /// Offsets of the hits across the fibre.
     pub(super) offsets: Vec<f32>,
     /// Directions of each view, by component.
     pub(super) wi: Vec<[Vec<f32>; 3]>,
-    /// Weights of the integral of `S cos theta_i` over the directions of each view, times the weight of the view; and `cos theta_i`.
+    /// Weights of the integral of `S cos theta_i` over the directions of each view, times the weight of the view, paired with
+    /// `cos theta_i`.
     pub(super) weights: Vec<Vec<[f64; 2]>>,
     /// Weight of each view, as a share of the largest.
     pub(super) view_weights: Vec<f64>,
     /// S of the look, by view and direction.
     pub(super) look: Vec<Vec<[f64; 3]>>,
-    /// Blur of each view, where the norm has one.
+    /// Blur of each view, if the norm has one.
     blurs: Option<Vec<Blur>>,
 }
 
 impl Points {
-    /// Points for a look, which a model is compared with; `stream`, below 4, chooses others.
+    /// Draws the points for a look, which the model `to` is compared with. Another `stream`, below 4, draws other points.
     ///
     /// # Errors
     ///
-    /// If a value of the look is out of its range.
+    /// Returns an error if a value of the look is out of its range.
     pub fn new(
         from: &Look,
         to: ModelId,
@@ -61,7 +62,7 @@ impl Points {
         } else {
             vec![0.0]
         };
-        // Ratios of weights alone count, and sums of large weights would overflow.
+        // Only ratios of weights count, and sums of large weights would overflow.
         let largest = config.weights.iter().copied().fold(0.0, f64::max);
         let share = |weight: &f64| (weight / largest).max(LEAST_WEIGHT);
         let view_weights: Vec<f64> = config.weights.iter().map(share).collect();
@@ -94,14 +95,14 @@ impl Points {
         Ok(points)
     }
 
-    /// Whether the look reflects no light.
+    /// Returns true if the look reflects no light towards any view.
     #[must_use]
     pub fn is_black(&self) -> bool {
         let mut values = self.look.iter().flatten().flatten();
         values.all(|value| *value == 0.0)
     }
 
-    /// The material at a view, by offset.
+    /// Returns the material at a view, by offset.
     pub(super) fn bsdfs(&self, material: &AnyMaterial, view: usize) -> Vec<AnyBsdf> {
         let offsets = self.offsets.iter();
         offsets
@@ -109,7 +110,7 @@ impl Points {
             .collect()
     }
 
-    /// S of a material, by view and direction: the mean over the offsets.
+    /// Returns S of a material, by view and direction, as the mean over the offsets.
     pub(super) fn values(&self, material: &AnyMaterial) -> Vec<Vec<[f64; 3]>> {
         let views = 0..self.views.len();
         views
@@ -134,11 +135,11 @@ impl Points {
             .collect()
     }
 
-    /// Distance of a model from the look, relative to the norm of the look.
+    /// Returns the distance of a model from the look, relative to the norm of the look.
     ///
     /// # Errors
     ///
-    /// If a value is out of its range.
+    /// Returns an error if a value is out of its range.
     pub fn distance(&self, model: ModelId, values: &Values, norm: Norm) -> Result<f64, ParamError> {
         let other = self.values(&model.material(values)?);
         let views = 0..self.views.len();
@@ -147,11 +148,12 @@ impl Points {
         Ok(ratio(difference, own, norm))
     }
 
-    /// Integrals over a view of the difference of other values, and of the look: of magnitudes or of squares.
+    /// Returns integrals over a view of the difference between other values and the look, and of the look alone: of magnitudes or of
+    /// squares.
     ///
     /// # Panics
     ///
-    /// If the norm is blurred and the points were not made for it.
+    /// Panics if the norm is blurred and the points were not made for it.
     pub(super) fn sums(&self, view: usize, other: &[[f64; 3]], norm: Norm) -> [f64; 2] {
         let look = &self.look[view];
         let difference: Vec<[f64; 3]> = (look.iter().zip(other))
@@ -175,7 +177,7 @@ impl Points {
         })
     }
 
-    /// Values that are compared in a norm, given those of S, and their weights.
+    /// Returns the values that are compared in a norm, given those of S, and their weights.
     pub(super) fn compared<'a>(
         &'a self,
         view: usize,
@@ -191,7 +193,7 @@ impl Points {
         }
     }
 
-    /// Derivatives by the values of S, given those by the values that are [compared](Self::compared).
+    /// Returns the derivatives by the values of S, given those by the values that are [compared](Self::compared).
     pub(super) fn derivatives(
         &self,
         view: usize,
@@ -212,7 +214,7 @@ impl Points {
     }
 }
 
-/// Relative distance of two integrals.
+/// Returns the relative distance, given the integrals of the difference and of the look.
 pub(super) fn ratio(difference: f64, own: f64, norm: Norm) -> f64 {
     let ratio = difference / own.max(f64::MIN_POSITIVE);
     match norm {
@@ -221,14 +223,14 @@ pub(super) fn ratio(difference: f64, own: f64, norm: Norm) -> f64 {
     }
 }
 
-/// Directions and weights of a view: every second direction is a sample of the look, the others are uniform.
+/// Draws directions and weights of a view. Every second direction is a sample of the look, and the others are uniform.
 fn draw(
     bsdfs: &[AnyBsdf],
     directions: usize,
     (seed, stream): (u64, u64),
     weight: f64,
 ) -> ([Vec<f32>; 3], Vec<[f64; 2]>) {
-    // A sequence each: every second point of one sequence fills half of its range.
+    // Each kind has its own sequence, because every second point of one sequence fills half of its range.
     let [mut samples, mut uniforms] = [0, 1].map(|kind| Halton::new(4, seed, 2 * stream + kind));
     let (mut wi, mut weights) = ([const { Vec::new() }; 3], Vec::new());
     for place in 0..directions {

@@ -1,34 +1,34 @@
-//! The distance by view and by lobe.
+//! Residuals: the distance by view and by lobe.
 
 use super::points::{Points, ratio};
 use super::{Look, Norm};
 use hairis::ParamError;
 use serde::Serialize;
 
-/// Distance of two models seen from an inclination.
+/// Distance of two models seen from one inclination, in several norms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Residual {
-    /// Inclination of the viewer, degrees.
+    /// Inclination of the viewer, in degrees.
     pub theta_o_deg: f64,
-    /// Distances relative to the norm of the first model: L1, and L2.
+    /// Distance in L1, relative to the norm of the first model.
     pub l1: f64,
-    /// See [`l1`](Self::l1).
+    /// Distance in L2, relative to the norm of the first model.
     pub l2: f64,
     /// L1 of the mean of RGB, as [`difference`](crate::difference) measures it.
     pub l1_mean: f64,
-    /// Integral of `S cos theta_i`, mean of RGB: of the first model.
+    /// Albedo of the first model: the integral of `S cos theta_i`, mean of RGB.
     pub albedo_from: f64,
     /// Albedo of the other model.
     pub albedo_to: f64,
-    /// L1 by the lobes of the first model: the distance at a direction is divided as S is.
+    /// Distance in L1 by the lobes of the first model. At each direction the distance is divided as S is.
     pub lobes: Vec<f64>,
 }
 
-/// The residuals of a model by view.
+/// Returns the residuals of a model from each view of the points.
 ///
 /// # Errors
 ///
-/// If a value is out of its range.
+/// Returns an error if a value is out of its range.
 pub fn residuals(from: &Look, other: &Look, points: &Points) -> Result<Vec<Residual>, ParamError> {
     let material = from.model.material(&from.values)?;
     let values = points.values(&other.model.material(&other.values)?);
@@ -68,7 +68,7 @@ pub fn residuals(from: &Look, other: &Look, points: &Points) -> Result<Vec<Resid
             let look = &points.look[view][place];
             let difference: f64 = look.iter().zip(value).map(|(a, b)| (a - b).abs()).sum();
             for (lobe, share) in lobes.iter_mut().zip(&shares) {
-                // Where the first model is black every lobe has as much.
+                // If the first model evaluates to zero, every lobe gets the same share.
                 let share = if total > 0.0 {
                     share / total
                 } else {

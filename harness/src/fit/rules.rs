@@ -1,4 +1,4 @@
-//! Values that need no fit.
+//! Rules that give a model's values without a fit.
 
 use super::{FitConfig, Look};
 use crate::difference::least;
@@ -6,10 +6,10 @@ use hairis::model::Bell as _;
 use hairis_materials::material::single;
 use hairis_variants::{Cauchy, ModelId, Values};
 
-/// Rules without a fit, in the order of [`rules`]: the factors on a Cauchy bell's width by which it replaces a Gaussian one.
+/// Names of the rules, in the order of [`rules`]: each is a factor on a Cauchy bell's width by which it replaces a Gaussian one.
 pub const RULES: [&str; 4] = ["equal", "half-width", "area", "best factor"];
 
-/// Values that a fit to a look starts from: the look's own where both models have the same fields, else the measured preset.
+/// Returns the values that a fit to a look starts from: those of the look if both models have the same fields, or else the measured preset.
 #[must_use]
 pub fn first_start(from: &Look, to: ModelId) -> Values {
     if from.model.fields() == to.fields() {
@@ -19,12 +19,12 @@ pub fn first_start(from: &Look, to: ModelId) -> Values {
     }
 }
 
-/// Values of each of [`RULES`], where both models have the same fields; else, and between equal models, the first start alone.
-/// The best common factor on the widths is that of the least `distance`.
+/// Returns the values of each of [`RULES`] if both models have the same fields; otherwise, and between equal models, the first start alone.
+/// The best common factor on the widths has the least `distance`.
 ///
 /// # Errors
 ///
-/// If `distance` fails.
+/// Returns the first error of `distance`.
 pub fn rules<E>(
     from: &Look,
     to: ModelId,
@@ -49,7 +49,7 @@ pub fn rules<E>(
     Ok([first].into_iter().chain(scaled).collect())
 }
 
-/// Values with the widths times a factor: angles that are drawn by their logarithm.
+/// Returns values with the widths times a factor. Widths are the angles that are drawn by their logarithm.
 fn with_widths(values: &Values, factor: f64, fixed: &[String]) -> Values {
     let mut scaled = *values;
     for (index, field) in values.fields().iter().enumerate() {

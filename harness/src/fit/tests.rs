@@ -1,4 +1,4 @@
-//! Fits whose answer is known, and fits that may not be worse than their start.
+//! Tests of fits whose answer is known, and of fits that may not be worse than their start.
 
 use super::*;
 use hairis_instruments::progress::Progress;
@@ -12,7 +12,7 @@ fn look(model: ModelId, preset: &str) -> Look {
     Look { model, values }
 }
 
-/// Largest difference of two values: of widths, colours and strengths relative to them or to a tenth, of angles in rad.
+/// Returns the largest difference of two values: for angles in rad, for all others relative to the value or to a tenth.
 fn apart(a: &Values, b: &Values) -> f64 {
     let mut most = 0.0_f64;
     for (index, field) in a.fields().iter().enumerate() {
@@ -193,14 +193,14 @@ fn the_distance_is_that_of_another_quadrature() {
         let distance = points.distance(ModelId::Cauchy, &values, Norm::Blurred);
         let (distance, want) = (distance.expect("legal values"), row.figures.blurred.l1);
         println!("blurred {distance} {want}");
-        // Of channels, where the other is of their mean.
+        // The fit compares channels, and the difference compares their mean.
         assert!((distance / want - 1.0).abs() < 0.05, "{distance} {want}");
         let sum: f64 = found.lobes.iter().sum();
         assert!((sum / found.l1 - 1.0).abs() < 1e-6, "lobes have all of it");
     }
 }
 
-/// Refits between models of their presets; between models of the same fields, of the hair of the study's short grid as well, all from
+/// Refits between models, from their presets; between models of the same fields, from the hair of the study's short grid as well, all from
 /// its inclinations. With `HAIRIS_RECORD=write` in the environment, writes the record.
 #[test]
 fn refits_are_those_recorded() {

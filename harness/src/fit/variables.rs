@@ -1,4 +1,4 @@
-//! Numbers of a model's fields as variables of an optimiser.
+//! Numbers of a model's fields, as variables of an optimiser.
 
 use hairis_materials::material::single;
 use hairis_variants::{Field, Kind, Values};
@@ -10,20 +10,20 @@ const MOST: f64 = 1e3;
 /// Share of a number by which starts differ.
 const SPREAD: f64 = 0.3;
 
-/// One number of a field.
+/// Variable of the optimiser: one number of a field.
 #[derive(Clone, Copy, Debug)]
 struct Variable {
     index: usize,
     place: usize,
     /// Whether the variable is the logarithm of the number.
     is_log: bool,
-    /// Number per unit of the variable.
+    /// Change of the number per unit of the variable.
     scale: f64,
     /// Least and largest variable.
     range: [f64; 2],
 }
 
-/// The free numbers of values: those of fields that are given, not fixed, and no words.
+/// Free numbers of values: those of fields that are given, not fixed, and not words.
 #[derive(Clone, Debug)]
 pub(super) struct Variables {
     base: Values,
@@ -45,13 +45,13 @@ impl Variables {
         Self { base: *base, all }
     }
 
-    /// The variables of the values.
+    /// Returns the variables of the values.
     pub(super) fn start(&self) -> Vec<f64> {
         let of = |one: &Variable| one.of(f64::from(self.base.numbers_at(one.index)[one.place]));
         self.clamped(self.all.iter().map(of).collect())
     }
 
-    /// How far starts are from each other.
+    /// Returns the distance of starts from each other, per variable.
     pub(super) fn spreads(&self) -> impl Iterator<Item = f64> + '_ {
         self.all.iter().map(|one| {
             let number = f64::from(self.base.numbers_at(one.index)[one.place]);
@@ -63,12 +63,12 @@ impl Variables {
         })
     }
 
-    /// Least and largest variables.
+    /// Returns the least and the largest of each variable.
     pub(super) fn bounds(&self) -> [Vec<f64>; 2] {
         [0, 1].map(|end| self.all.iter().map(|one| one.range[end]).collect())
     }
 
-    /// Variables within their bounds.
+    /// Clamps variables to their bounds.
     pub(super) fn clamped(&self, mut x: Vec<f64>) -> Vec<f64> {
         for (x, one) in x.iter_mut().zip(&self.all) {
             *x = x.clamp(one.range[0], one.range[1]);
@@ -76,7 +76,7 @@ impl Variables {
         x
     }
 
-    /// The values of variables.
+    /// Converts variables to values.
     pub(super) fn values(&self, x: &[f64]) -> Values {
         let mut values = self.base;
         for (x, one) in x.iter().zip(&self.all) {
@@ -90,7 +90,7 @@ impl Variables {
         values
     }
 
-    /// Derivatives by the variables, from those by the numbers.
+    /// Returns the derivatives by the variables, given those by the numbers.
     pub(super) fn derivatives(&self, x: &[f64], by_number: &Values<f64>) -> Vec<f64> {
         let derivative = |(x, one): (&f64, &Variable)| {
             let slope = if one.is_log {

@@ -1,4 +1,4 @@
-//! Names, keys, agreement with quadrature, and checks.
+//! Tests of names, keys, agreement with quadrature, and checks.
 
 use super::*;
 use crate::efficiency::intensity;
@@ -71,7 +71,7 @@ fn variances_agree_with_quadrature_for_every_model() {
             };
             let [mean, square, _] = Constant.integrate(&moments, &sphere).value;
             let place = format!("{} {}", id.name(), of.sampler());
-            // Kajiya-Kay's sampler is perfect here: what is left is rounding of single precision.
+            // Kajiya-Kay's sampler is perfect here: the error that remains is rounding of single precision.
             let rounded = |of: Estimate, size: f64| Estimate {
                 standard_error: of.standard_error.hypot(1e-5 * size),
                 ..of

@@ -1,4 +1,4 @@
-//! Eight candidates at a time: drawn, looked up and weighed.
+//! Packets of eight candidates: drawn, looked up and weighed.
 
 use super::MOST;
 use crate::sampler::Scatter;
@@ -33,14 +33,14 @@ impl LightBlock {
     }
 }
 
-/// Packets of each technique in the largest pool.
+/// Number of packets of each technique in the largest pool.
 pub(super) const PACKETS: usize = MOST / 8;
 
-/// Directions of a light that were drawn beforehand: the largest pool's, for several pools.
+/// Directions of a light that were drawn beforehand, for several pools of the largest size.
 pub(crate) struct LightBlocks(pub(super) Vec<[LightBlock; PACKETS]>);
 
 impl LightBlocks {
-    /// For so many of the largest pools.
+    /// Draws the directions for so many of the largest pools.
     pub(crate) fn draw(light: &dyn Light, source: &mut Independent, pools: usize) -> Self {
         Self(
             (0..pools)
@@ -50,19 +50,19 @@ impl LightBlocks {
     }
 }
 
-/// Three rows of eight uniform numbers.
+/// Draws three rows of eight uniform numbers.
 pub(crate) fn numbers(source: &mut Independent) -> [f32x8; 3] {
     array::from_fn(|_| f32x8::new(array::from_fn(|_| source.next_f32())))
 }
 
-/// A shading point under a light.
+/// Shading point under a light.
 #[derive(Clone, Copy)]
 pub(crate) struct Lit<'a> {
     pub(crate) scatter: &'a Scatter,
     pub(crate) light: &'a dyn Light,
 }
 
-/// Eight candidates of one technique at one hit, one per lane: everything that a weight needs.
+/// Eight candidates of one technique at one hit, one per lane, with everything that a weight needs.
 pub(super) struct Candidates8 {
     eval: Eval8,
     cos_theta_i: f32x8,
@@ -70,7 +70,7 @@ pub(super) struct Candidates8 {
 }
 
 impl Lit<'_> {
-    /// Candidates from the BSDF. Samples bring their value and density along.
+    /// Draws candidates from the BSDF. Its samples include value and density.
     #[inline]
     pub(super) fn of_bsdf(&self, xi: &[f32x8; 3]) -> Candidates8 {
         let sample = self.scatter.sample8(xi);
@@ -85,7 +85,7 @@ impl Lit<'_> {
         }
     }
 
-    /// Candidates from the light.
+    /// Evaluates candidates that were drawn from the light.
     #[inline]
     pub(super) fn of_light(&self, block: &LightBlock) -> Candidates8 {
         let eval = self.scatter.eval_pdf8(&block.wi);
@@ -98,7 +98,7 @@ impl Lit<'_> {
 }
 
 impl Candidates8 {
-    /// In a pool of `count` candidates of each technique.
+    /// Weighs the candidates in a pool of `count` candidates of each technique.
     #[inline]
     pub(super) fn weigh(&self, count: u32) -> Weighed8 {
         let Self {
@@ -120,12 +120,12 @@ impl Candidates8 {
         )
     }
 
-    /// Densities of the BSDF's technique and of the light's, per steradian.
+    /// Returns the densities of the BSDF's technique and of the light's, per steradian.
     pub(super) const fn pdf(&self) -> [f32x8; 2] {
         [self.eval.pdf, self.seen.pdf]
     }
 
-    /// The estimate of one-sample MIS along each direction, linear RGB.
+    /// Returns the estimate of one-sample MIS along each direction, linear RGB.
     #[inline]
     pub(super) fn one_sample_mis(&self) -> [f32x8; 3] {
         let density = f32x8::splat(0.5) * (self.eval.pdf + self.seen.pdf);

@@ -1,49 +1,49 @@
-//! Efficiency in equal time, the price of a ray being a parameter.
+//! Efficiency in equal time, with the price of a ray as a parameter.
 //!
-//! An estimate takes the time of its candidates and of its choice, and for each ray that is traced the price of one. Its
-//! efficiency is `1 / (V time)`, half of the directions visible; gains are over one-sample MIS at the same price. The
-//! preparation of the shading point is left out of both.
+//! An estimate takes the time of its candidates and of its choice, and the price of a ray for each ray that is traced. Its efficiency is
+//! `1 / (V time)`, with half of the directions visible; gains are over one-sample MIS at the same price. The preparation of the shading
+//! point is left out of both.
 
 use super::result::PoolFigures;
 use super::{HALF, RAYS, RayRow, RayTimes, VISIBLE};
 use serde::Serialize;
 
-/// Prices of a ray, in µs.
+/// Prices of a ray at which efficiencies are compared, in µs.
 pub const PRICES_US: [f64; 4] = [0.1, 0.3, 1.0, 3.0];
 
-/// A model and sampler under one light, in equal time.
+/// Efficiencies of a model and sampler under one light, in equal time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EqualTime {
-    /// The model.
+    /// Name of the model.
     pub model: &'static str,
-    /// The sampler.
+    /// Name of the sampler.
     pub sampler: &'static str,
     /// Name of the light.
     pub light: String,
-    /// Rays by one-sample MIS, by number.
+    /// Estimates by one-sample MIS, by number of rays.
     pub mis: Vec<Point>,
-    /// Pools, by candidates and rays.
+    /// Estimates from pools, by candidates and rays.
     pub pools: Vec<Point>,
 }
 
-/// An estimate of direct light at one shading point: its time and its error.
+/// Estimate of direct light at one shading point, with its time and its error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Point {
-    /// Candidates of the BSDF, and as many of the light; 0 for one-sample MIS.
+    /// Number of candidates of the BSDF, and of the light; 0 for one-sample MIS.
     pub candidates_each: u32,
-    /// Choices, or samples.
+    /// Number of choices, or of samples for one-sample MIS.
     pub rays: u32,
-    /// Rays that are traced.
+    /// Number of rays that are traced, on average.
     pub traced: f64,
-    /// Relative variance, half of the directions visible.
+    /// Relative variance, with half of the directions visible.
     pub v: f64,
     /// Time without the rays, in ns.
     pub ns: f64,
-    /// Efficiency over that of one-sample MIS, by [`PRICES_US`].
+    /// Efficiency over that of one-sample MIS, one for each of [`PRICES_US`].
     pub gain: [f64; 4],
-    /// Price in µs above which it is the more efficient one: 0 if it is at any price, none if it never is.
+    /// Price in µs above which the estimate is more efficient than one-sample MIS: 0 if it is at any price, none if it never is.
     pub break_even_us: Option<f64>,
-    /// Whether no other estimate of less time has a lesser V, by [`PRICES_US`].
+    /// Whether no other estimate of less time has a lesser V, one for each of [`PRICES_US`].
     pub on_front: [bool; 4],
 }
 
@@ -61,19 +61,19 @@ impl Point {
         }
     }
 
-    /// Time at this price of a ray, in ns.
+    /// Returns the time at this price of a ray, in ns.
     #[must_use]
     pub fn time_ns(&self, price_us: f64) -> f64 {
         self.ns + 1e3 * price_us * self.traced
     }
 
-    /// Efficiency over that of `other` at this price.
+    /// Returns the efficiency over that of `other` at this price of a ray.
     #[must_use]
     pub fn gain_over(&self, other: &Self, price_us: f64) -> f64 {
         other.v * other.time_ns(price_us) / (self.v * self.time_ns(price_us))
     }
 
-    /// Price from which on this is more efficient than `other`: `V time` of both are linear in the price.
+    /// Returns the price above which `self` is more efficient than `other`. `V time` of both is linear in the price.
     fn break_even(&self, other: &Self) -> Option<f64> {
         let at_nothing = other.v * other.ns - self.v * self.ns;
         let per_ns = other.v * other.traced - self.v * self.traced;
@@ -132,7 +132,7 @@ impl EqualTime {
         }
     }
 
-    /// The point of a pool.
+    /// Returns the estimate from a pool of this size with this number of rays.
     #[must_use]
     pub fn pool(&self, candidates_each: u32, rays: u32) -> Option<&Point> {
         self.pools
@@ -140,7 +140,7 @@ impl EqualTime {
             .find(|point| (point.candidates_each, point.rays) == (candidates_each, rays))
     }
 
-    /// The most efficient pool at a price.
+    /// Returns the most efficient pool at a price of a ray, in µs.
     #[must_use]
     pub fn best(&self, price_us: f64) -> Option<&Point> {
         let gain = |point: &Point| point.gain_over(&self.mis[0], price_us);

@@ -1,4 +1,4 @@
-//! Variances at one shading point.
+//! Measurement of variances at one shading point.
 
 use super::candidates::{LightBlock, LightBlocks, Lit, PACKETS, numbers};
 use super::result::{BiasScore, OneRay, PoolFigures, RayFigures, RayPose};
@@ -9,22 +9,22 @@ use hairis_instruments::sequence::Independent;
 use hairis_instruments::stats::{Estimate, Moments};
 use wide::f32x8;
 
-/// Candidates of both techniques.
+/// Number of candidates of both techniques.
 const ALL: usize = 2 * MOST;
 
-/// Candidates by column, weighed in pools of each of `S` sizes. Those of both techniques alternate in pairs, so that the pools
-/// of every size are adjacent.
+/// Candidates by column, weighed in pools of each of `S` sizes. The candidates of both techniques alternate in pairs, so that the pools of
+/// every size are adjacent.
 struct Columns<const S: usize> {
     sizes: [u32; S],
     contribution: [[f32; ALL]; 3],
-    /// In pools of each size.
+    /// Weights in pools of each size.
     weight: [[f32; ALL]; S],
     /// Densities of the BSDF's technique and of the light's.
     pdf: [[f32; ALL]; 2],
 }
 
 impl<const S: usize> Columns<S> {
-    /// Draws as many candidates of each technique as the largest pool has; `block` gives those of the light, packet by packet.
+    /// Draws as many candidates of each technique as the largest pool has; `block` returns those of the light, packet by packet.
     fn draw(
         lit: Lit<'_>,
         sizes: [u32; S],
@@ -58,24 +58,24 @@ impl<const S: usize> Columns<S> {
         columns
     }
 
-    /// Places of the first candidates of the pools of a size.
+    /// Returns the index of the first candidate of each pool of a size.
     fn pools(&self, size: usize) -> impl Iterator<Item = usize> + use<S> {
         (0..ALL).step_by(2 * self.sizes[size] as usize)
     }
 
-    /// The choice of `rays` candidates of the pool of a size at a place.
+    /// Chooses `rays` candidates of the pool of a size that begins at `from`.
     fn choose(&self, size: usize, from: usize, rays: u32, u: f32) -> Choices<'_> {
         let to = from + 2 * self.sizes[size] as usize;
         let contribution = self.contribution.each_ref().map(|column| &column[from..to]);
         choose(contribution, &self.weight[size][from..to], rays, u)
     }
 
-    /// Squared deviations of the plain estimators from `mean` at a candidate: by the BSDF, by the light and by one-sample MIS.
+    /// Returns the squared deviations of the plain estimators from `mean` at a candidate: by the BSDF, by the light and by one-sample MIS.
     #[inline]
     fn squares(&self, place: usize, mean: f64) -> [f64; 3] {
         let (f, [bsdf, light]) = self.at(place);
         if !is_light(place) && bsdf == 0.0 {
-            // A discarded sample is an event of the BSDF's sampler that the mixture has half as often.
+            // A discarded sample is an event of the BSDF's sampler, which occurs half as often in the mixture.
             return [2.0, 0.0, 1.0].map(|times| times * mean * mean);
         }
         let mixture = 0.5 * (bsdf + light);
@@ -89,7 +89,7 @@ impl<const S: usize> Columns<S> {
         })
     }
 
-    /// Contribution of a candidate, the mean of RGB, and its densities.
+    /// Returns the contribution of a candidate, as the mean of RGB, and its densities.
     #[inline]
     fn at(&self, place: usize) -> (f64, [f64; 2]) {
         let f = self
@@ -105,17 +105,17 @@ impl<const S: usize> Columns<S> {
     }
 }
 
-/// Place of candidate `index` of a technique.
+/// Returns the index of a technique's candidate among all.
 const fn place(technique: usize, index: usize) -> usize {
     4 * (index / 2) + 2 * technique + index % 2
 }
 
-/// Whether the candidate at a place is the light's.
+/// Returns true if the candidate at an index is one of the light.
 const fn is_light(place: usize) -> bool {
     place % 4 > 1
 }
 
-/// Squared deviations of the plain estimators from the reference, and the means of those that see every light.
+/// Squared deviations of the plain estimators from the reference, and the means of those that sample every light.
 #[derive(Default)]
 struct Plain {
     /// Moments of the BSDF's sampler, the light's and one-sample MIS.
@@ -151,12 +151,12 @@ impl Plain {
     }
 }
 
-/// Estimates from pools, by place.
+/// Estimates from pools, by place in [`SIZES`] and [`RAYS`].
 #[derive(Default)]
 struct Pooled {
-    /// One ray without occlusion, by size.
+    /// Moments of one ray without occlusion, by size.
     chosen: [Moments; SIZES.len()],
-    /// Half of the directions visible, and how many rays were traced.
+    /// Moments with half of the directions visible, and the number of rays that were traced.
     half: [[(Moments, u64); RAYS.len()]; SIZES.len()],
 }
 
@@ -192,7 +192,7 @@ impl Pooled {
     }
 }
 
-/// Contribution of an unoccluded ray, the mean of RGB.
+/// Returns the contribution of an unoccluded ray, as the mean of RGB.
 fn mean_of(choice: &Choice) -> f64 {
     choice.contribution.into_iter().map(f64::from).sum::<f64>() / 3.0
 }
@@ -200,17 +200,17 @@ fn mean_of(choice: &Choice) -> f64 {
 /// V of one ray without occlusion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unoccluded<const S: usize> {
-    /// By one-sample MIS.
+    /// V by one-sample MIS.
     pub(crate) mis: Estimate,
-    /// Chosen from pools of each size.
+    /// V of a ray chosen from pools of each size.
     pub(crate) chosen: [Estimate; S],
-    /// Bias of the mean over the pools of the last size, in standard errors and corrected for skewness; none if there were too
-    /// few effective pools for a test.
+    /// Bias of the mean over the pools of the last size, in standard errors and corrected for skewness; none if there were too few
+    /// effective pools for a test.
     pub(crate) bias: Option<f64>,
 }
 
-/// V of one ray from pools of some sizes, at most [`MOST`], by as many of the largest pools as there are `blocks` for. The
-/// errors include that of the mean, `reference`.
+/// Measures V of one ray from pools of some sizes, at most [`MOST`]. There are as many of the largest pools as `blocks`. The errors include
+/// that of the mean, `reference`.
 pub(crate) fn unoccluded<const S: usize>(
     lit: Lit<'_>,
     blocks: &LightBlocks,
@@ -235,7 +235,7 @@ pub(crate) fn unoccluded<const S: usize>(
         }
     }
     let mis = squares.mean_estimate().scale(1.0 / (mean * mean));
-    // V about a mean that is off: its derivative by the mean is -2 V over the mean.
+    // If the mean is off, V is off as well: its derivative by the mean is -2 V over the mean.
     let of_mean = 2.0 * mis.value * reference.standard_error / mean;
     let bias = chosen
         .last()
@@ -250,7 +250,7 @@ pub(crate) fn unoccluded<const S: usize>(
     }
 }
 
-/// Measures a shading point with `count` of the largest pools, and their parts.
+/// Measures a shading point with `count` of the largest pools, and with their parts as smaller pools.
 pub(super) fn pose(
     lit: Lit<'_>,
     theta_o_deg: f64,

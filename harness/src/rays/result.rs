@@ -1,57 +1,57 @@
-//! The figures, as plain data: what reports print and JSON keeps.
+//! Figures as plain data, which reports print and JSON keeps.
 
 use super::{EqualTime, RayTimes, VISIBLE};
 use crate::efficiency::Check;
 use hairis_instruments::stats::Estimate;
 use serde::Serialize;
 
-/// Everything about rays.
+/// Results about rays that are chosen from candidates.
 #[derive(Clone, Debug, Serialize)]
 pub struct RaysResult {
-    /// Pools of 32 + 32 candidates drawn per shading point; smaller pools are parts of them.
+    /// Number of pools of 32 + 32 candidates drawn per shading point; smaller pools are parts of them.
     pub pools: usize,
-    /// Variances, by model, sampler and light: they depend on the seed alone.
+    /// Variances by model, sampler and light, which depend on the seed alone.
     pub rows: Vec<RayRow>,
-    /// Times of this machine, in the same order.
+    /// Times of this machine, in the order of the rows.
     pub times: Vec<RayTimes>,
-    /// Efficiencies in equal time, in the same order.
+    /// Efficiencies in equal time, in the order of the rows.
     pub equal_time: Vec<EqualTime>,
-    /// Whether the means agree with their references.
+    /// Check of the means against their references.
     pub check: Check,
 }
 
-/// One model and sampler under one light.
+/// Variances of one model and sampler under one light.
 #[derive(Clone, Debug, Serialize)]
 pub struct RayRow {
-    /// The model.
+    /// Name of the model.
     pub model: &'static str,
-    /// The sampler of its candidates.
+    /// Name of the sampler that draws the candidates.
     pub sampler: &'static str,
     /// Name of the light.
     pub light: String,
     /// Geometric means over the poses.
     pub mean: RayFigures,
-    /// Each pose.
+    /// Variances of each pose.
     pub poses: Vec<RayPose>,
 }
 
-/// One shading point.
+/// Variances and biases at one shading point.
 #[derive(Clone, Debug, Serialize)]
 pub struct RayPose {
     /// Inclination of the viewer, in degrees.
     pub theta_o_deg: f64,
-    /// Expected value, the mean of RGB, with its standard error.
+    /// Expected value, as the mean of RGB, with its standard error.
     pub reference: Estimate,
-    /// Variances.
+    /// Relative variances at this point.
     pub figures: RayFigures,
-    /// Bias of each mean in standard errors, corrected for skewness, where there were enough samples for a test.
+    /// Bias of each mean in standard errors, corrected for skewness.
     pub z: Vec<BiasScore>,
 }
 
-/// Bias of one mean.
+/// Bias of one mean against its reference.
 #[derive(Clone, Debug, Serialize)]
 pub struct BiasScore {
-    /// The estimator.
+    /// Name of the estimator.
     pub estimator: String,
     /// Bias in standard errors.
     pub z: f64,
@@ -59,32 +59,32 @@ pub struct BiasScore {
     pub tested: bool,
 }
 
-/// Relative variances of direct light.
+/// Relative variances of direct light, by estimator.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RayFigures {
-    /// A ray by the BSDF's sampler.
+    /// V of a ray by the BSDF's sampler.
     pub bsdf: OneRay,
-    /// A ray by the light's sampler.
+    /// V of a ray by the light's sampler.
     pub light: OneRay,
-    /// A ray by one-sample MIS.
+    /// V of a ray by one-sample MIS.
     pub mis: OneRay,
-    /// A ray chosen from a pool, by [`SIZES`](super::SIZES).
+    /// V of a ray chosen from a pool, one for each of [`SIZES`](super::SIZES).
     pub chosen: Vec<OneRay>,
-    /// Pools and numbers of rays, half of the directions visible.
+    /// V from pools by number of rays, with half of the directions visible.
     pub half: Vec<PoolFigures>,
 }
 
-/// V of one ray.
+/// V of one ray, without occlusion and with partial visibility.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct OneRay {
-    /// Without occlusion.
+    /// V without occlusion.
     pub unoccluded: Estimate,
-    /// With the shares of [`VISIBLE`] visible: `(V + 1)/v - 1`.
+    /// V if the shares of [`VISIBLE`] are visible: `(V + 1)/v - 1`.
     pub visible: [Estimate; 3],
 }
 
 impl OneRay {
-    /// From V without occlusion.
+    /// Returns all figures, given V without occlusion.
     pub(super) fn new(unoccluded: Estimate) -> Self {
         Self {
             unoccluded,
@@ -93,7 +93,7 @@ impl OneRay {
     }
 }
 
-/// V of one ray that passes with probability `share`, whatever its direction: from `E[X^2]/share` over the squared mean.
+/// Returns V of one ray that passes with probability `share`, whatever its direction, from `E[X^2]/share` over the squared mean.
 pub(crate) fn occluded(v: Estimate, share: f64) -> Estimate {
     Estimate {
         value: (v.value + 1.0) / share - 1.0,
@@ -101,21 +101,21 @@ pub(crate) fn occluded(v: Estimate, share: f64) -> Estimate {
     }
 }
 
-/// Several rays from one pool.
+/// V of several rays that are chosen from one pool.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoolFigures {
-    /// Candidates of the BSDF, and as many of the light.
+    /// Number of candidates of the BSDF, and of the light.
     pub candidates_each: u32,
-    /// Choices.
+    /// Number of choices.
     pub rays: u32,
-    /// Rays that are left of them where equal choices are one ray, on average.
+    /// Number of rays that are traced, on average, because equal choices are one ray.
     pub traced: f64,
-    /// V of the sum over the rays, half of the directions visible.
+    /// V of the sum over the rays, with half of the directions visible.
     pub v: Estimate,
 }
 
 impl RayFigures {
-    /// Geometric means; numbers of rays have arithmetic ones.
+    /// Returns geometric means of V, and arithmetic means of the numbers of rays.
     pub(super) fn mean(of: &[&Self]) -> Self {
         let mut mean = of[0].clone();
         let each: Vec<Vec<Estimate>> = of
@@ -147,7 +147,7 @@ impl RayFigures {
         mean
     }
 
-    /// Every V.
+    /// Returns every V of the figures.
     fn estimates(&mut self) -> Vec<&mut Estimate> {
         let mut all = Vec::new();
         for ray in [&mut self.bsdf, &mut self.light, &mut self.mis]

@@ -1,4 +1,4 @@
-//! Every model and sampler under every light.
+//! Run of every model and sampler under every light.
 
 use super::result::{RayFigures, RayPose, RayRow, RaysResult};
 use super::{EqualTime, Lit, RaySubject, measure, times};
@@ -10,23 +10,23 @@ use hairis_instruments::sequence::stream_id;
 use hairis_instruments::stats::Estimate;
 use std::collections::HashMap;
 
-/// Settings of a run.
+/// Settings of a run of the variances and times of rays.
 #[derive(Clone, Copy, Debug)]
 pub struct RaysConfig<'a> {
     /// Seed of every stream.
     pub seed: u64,
-    /// Pools of 32 + 32 candidates per shading point.
+    /// Number of pools of 32 + 32 candidates per shading point.
     pub pools: usize,
-    /// Passes of 4096 samples of references by stratified runs.
+    /// Number of passes of 4096 samples for references by stratified runs.
     pub passes: usize,
-    /// Rounds of the times.
+    /// Number of rounds in which times are measured.
     pub rounds: usize,
-    /// The lights.
+    /// Lights that the hair is seen under.
     pub lights: Lights<'a>,
 }
 
 impl<'a> RaysConfig<'a> {
-    /// The sizes of the command line.
+    /// Returns the settings of the command line; if `quick`, with fewer pools, passes and rounds.
     #[must_use]
     pub fn new(seed: u64, quick: bool, lights: impl Into<Lights<'a>>) -> Self {
         let [pools, passes, rounds] = if quick { [256, 16, 9] } else { [4096, 64, 31] };
@@ -40,13 +40,13 @@ impl<'a> RaysConfig<'a> {
     }
 }
 
-/// The streams of a cell.
+/// Returns the stream of a cell.
 fn stream(indices: [u64; 3]) -> u64 {
     stream_id(&[0x5a15_ed00_0001, stream_id(&indices)])
 }
 
-/// Measures times, on one thread and first, then variances on all. References of the bells are those of `efficiency`.
-/// `progress` is called from the workers with the number of cells done and of all cells.
+/// Measures times, on one thread and first, then variances on all threads. References of the bells are those of `efficiency`. Workers call
+/// `progress` with the number of cells done and of all cells.
 #[must_use]
 pub fn run(
     config: &RaysConfig<'_>,
@@ -76,7 +76,7 @@ pub fn run(
     }
 }
 
-/// The variances.
+/// Measures the variances.
 pub(super) fn rows(
     config: &RaysConfig<'_>,
     subjects: &[RaySubject],
@@ -113,7 +113,7 @@ pub(super) fn rows(
     })
 }
 
-/// The reference of each model under the light at a place, seen from a pose.
+/// Returns the reference of each model, by index of the light and of the pose.
 fn references(
     config: &RaysConfig<'_>,
     subjects: &[RaySubject],
@@ -151,7 +151,7 @@ fn references(
         .collect()
 }
 
-/// The mean of RGB by a stratified run over the formulas in double precision, drawn from the light.
+/// Returns the mean of RGB by a stratified run over the formulas in double precision, drawn from the light.
 fn by_run(
     subject: RaySubject,
     light: &dyn Light,
@@ -174,7 +174,7 @@ fn by_run(
     )
 }
 
-/// Holds every bias against one bound.
+/// Checks every bias against one bound.
 pub(super) fn check(rows: &[RayRow]) -> Check {
     let (mut scores, mut untested) = (Vec::new(), 0);
     for row in rows {

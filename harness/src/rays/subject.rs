@@ -1,4 +1,4 @@
-//! The models and samplers whose rays are measured, and the shading points.
+//! Models and samplers whose rays are measured, and their shading points.
 
 use crate::efficiency::{PHI_O_DEG, THETA_O_DEG};
 use crate::sampler::{Sampler, Scatter};
@@ -8,10 +8,10 @@ use hairis_instruments::direction::fibre_direction;
 use hairis_reference::{Reference, reference};
 use hairis_variants::{ModelId, Values};
 
-/// Offset of the ray from the fibre's axis, for models that read it, by place in [`THETA_O_DEG`].
+/// Offset of the ray from the fibre's axis, for models that read it, one for each of [`THETA_O_DEG`].
 const OFFSETS: [f32; 4] = [0.0, 0.5, -0.75, 0.25];
 
-/// A model with one of its samplers.
+/// Model with one of its samplers, whose rays are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RaySubject {
     id: ModelId,
@@ -19,7 +19,7 @@ pub struct RaySubject {
 }
 
 impl RaySubject {
-    /// Every model of the registry with each of its samplers; the two bells with uniform directions as well.
+    /// Returns every model of the registry with each of its samplers, and the two bells with uniform directions as well.
     pub fn all() -> impl Iterator<Item = Self> {
         let with_uniform = |id: ModelId| {
             let uniform = matches!(id, ModelId::Gaussian | ModelId::Cauchy).then_some(Self {
@@ -34,7 +34,7 @@ impl RaySubject {
         ModelId::ALL.iter().copied().flat_map(with_uniform)
     }
 
-    /// Every sampler of the model of an entry of the list, uniform directions first.
+    /// Returns every sampler of an entry's model, uniform directions first.
     pub(crate) fn of_model(model: ModelId) -> impl Iterator<Item = Self> {
         let uniform = Self {
             id: model,
@@ -49,28 +49,28 @@ impl RaySubject {
         [uniform].into_iter().chain(own)
     }
 
-    /// The entry of the list, unless directions are uniform.
+    /// Returns the entry of the registry, unless directions are uniform.
     pub(crate) fn own(self) -> Option<ModelId> {
         (!self.is_uniform).then_some(self.id)
     }
 
-    /// A material at a hit.
+    /// Prepares a material at a hit.
     ///
     /// # Errors
     ///
-    /// If a value is out of its range.
+    /// Returns an error if a value is out of its range.
     pub(crate) fn at(self, values: &Values, hit: Hit) -> Result<Scatter, ParamError> {
         let material = self.id.material(values)?;
         Ok(Scatter::at(material.prepare(hit), self.is_uniform))
     }
 
-    /// Name of the model.
+    /// Returns the name of the model in the registry.
     #[must_use]
     pub const fn model(self) -> &'static str {
         self.id.name()
     }
 
-    /// Name of the sampler.
+    /// Returns the name of the sampler in rows and reports.
     #[must_use]
     pub fn sampler(self) -> &'static str {
         match self {
@@ -85,27 +85,27 @@ impl RaySubject {
         }
     }
 
-    /// Number among streams of random numbers.
+    /// Returns the number of the subject among streams of random numbers.
     pub(super) fn index(self) -> u64 {
         2 * self.id as u64 + u64::from(self.is_uniform)
     }
 
-    /// The default hair, seen from place `pose` of [`THETA_O_DEG`].
+    /// Prepares the default hair, seen from [`THETA_O_DEG`] at index `pose`.
     ///
     /// # Panics
     ///
-    /// Never: default parameters are within their ranges.
+    /// Never panics, because default parameters are within their ranges.
     pub(super) fn scatter(self, pose: usize) -> Scatter {
         let hit = Hit::new(viewer(pose), OFFSETS[pose]);
         self.at(&self.id.measured(), hit)
             .expect("defaults are accepted")
     }
 
-    /// The formulas of the same in double precision.
+    /// Prepares the formulas of the same hair in double precision.
     ///
     /// # Panics
     ///
-    /// Never: default parameters are within their ranges.
+    /// Never panics, because default parameters are within their ranges.
     pub(super) fn formulas(self, pose: usize) -> Box<dyn Reference<f64>> {
         let wo = viewer(pose).as_dvec3().to_array();
         reference(self.id, &self.id.measured(), wo, f64::from(OFFSETS[pose]))

@@ -1,4 +1,4 @@
-//! Against references and closed forms; determinism; times and prices.
+//! Tests against references and closed forms, of determinism, and of times and prices.
 
 use super::equal_time::PRICES_US;
 use super::measure::pose;
@@ -28,7 +28,7 @@ fn small_map() -> Environment {
     Environment::from_pixels("small", 16, 8, pixels).expect("valid")
 }
 
-/// References under the sky.
+/// Returns the sky with the references under it.
 fn sky() -> &'static (Environment, EfficiencyResult) {
     static SKY: OnceLock<(Environment, EfficiencyResult)> = OnceLock::new();
     SKY.get_or_init(|| {
@@ -92,7 +92,7 @@ fn a_ray_of_4_and_4_candidates_is_worth_8_of_mis_and_of_8_and_8_15() {
             SIZES[size]
         );
         for row in &under_sky {
-            // The balance heuristic over n + n candidates has at most 1/(2n) of the variance of one sample of it.
+            // The balance heuristic over n + n candidates has at most 1/(2n) of the variance of one of its samples.
             let gain = row
                 .mean
                 .mis
@@ -149,7 +149,7 @@ fn one_ray_obeys_the_law_of_visibility() {
 
 #[test]
 fn plain_estimators_have_the_variances_of_their_references() {
-    // Under the sun the BSDF's samples hit once in thousands: its V is known all the same.
+    // Under the sun the BSDF's samples hit once in thousands, but the error of its V is small all the same.
     let (map, references) = sky();
     let subjects: Vec<RaySubject> = RaySubject::all()
         .filter(|subject| subject.sampler() == "published")
@@ -317,7 +317,7 @@ fn times_prices_and_fronts_fit_together() {
     );
 }
 
-/// Figures of plain estimators of `mis` and of pools of `chosen` over one ray.
+/// Returns figures in which plain estimators have `mis` as V, and pools have `chosen` over one ray.
 fn figures(mis: f64, chosen: f64) -> RayFigures {
     let one = |v| OneRay::new(Estimate::exact(v));
     let half = pools().map(|(size, rays)| PoolFigures {

@@ -1,8 +1,8 @@
 //! Times of rays without their tracing: candidates, weights, look-ups of the light and the choice.
 //!
-//! Measured on one thread with nothing else at work. One-sample MIS and pools of every size alternate within a round, on the
-//! same shading point and light. Numbers and the light's directions are drawn beforehand, the latter into blocks that are read
-//! in a row; the preparation of the shading point is shared by all and left out.
+//! Times are measured on one thread with nothing else at work. One-sample MIS and pools of every size alternate within a round, on the same
+//! shading point and light. Numbers and the light's directions are drawn beforehand, the latter into blocks that are read in a row. The
+//! preparation of the shading point is shared by all and left out.
 
 use super::candidates::{Candidates8, LightBlock, Lit, numbers};
 use super::{MOST, RAYS, RaySubject, SIZES};
@@ -16,13 +16,13 @@ use serde::Serialize;
 use std::time::Instant;
 use wide::f32x8;
 
-/// Packets of numbers, and blocks of the light's directions.
+/// Number of packets of numbers, and of blocks of the light's directions.
 const PACKETS: usize = 256;
 
-/// Candidates of a stretch: some 30 to 60 µs.
+/// Number of candidates that are timed at a stretch: some 30 to 60 µs.
 const CANDIDATES: usize = 2048;
 
-/// Place in [`THETA_O_DEG`](crate::efficiency::THETA_O_DEG) of the shading point.
+/// Index in [`THETA_O_DEG`](crate::efficiency::THETA_O_DEG) of the shading point.
 const POSE: usize = 1;
 
 /// Room for the largest pool, and for the rest of the last packet.
@@ -31,29 +31,29 @@ const ROOM: usize = 2 * MOST + 8;
 /// Times of one model and sampler under one light: medians over the rounds, in ns.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RayTimes {
-    /// The model.
+    /// Name of the model.
     pub model: &'static str,
-    /// The sampler.
+    /// Name of the sampler.
     pub sampler: &'static str,
     /// Name of the light.
     pub light: String,
-    /// A ray by one-sample MIS, eight of each technique at a time.
+    /// Time of a ray by one-sample MIS, eight of each technique at a time.
     pub mis_ns: f64,
-    /// Its standard error.
+    /// Standard error of that time.
     pub mis_ns_error: f64,
-    /// Pools, by [`SIZES`]: one ray chosen, and the most of [`RAYS`] that are no more than the candidates.
+    /// Times of pools, by [`SIZES`]: with one ray chosen, and with the most of [`RAYS`] that do not exceed the candidates.
     pub pool_ns: [[f64; 2]; SIZES.len()],
-    /// Standard errors of pools of which one ray is chosen.
+    /// Standard errors of the times with one ray chosen.
     pub pool_ns_error: [f64; SIZES.len()],
 }
 
-/// Most rays from a pool.
+/// Returns the largest number of rays that are chosen from a pool.
 fn most_rays(count: u32) -> u32 {
     RAYS[RAYS.len() - 1].min(2 * count)
 }
 
 impl RayTimes {
-    /// Time of a pool and of the choice of `rays` of its candidates, in ns: linear between those that were measured.
+    /// Returns the time of a pool and of the choice of `rays` of its candidates, in ns, interpolated linearly between the measured times.
     #[must_use]
     pub fn pool_ns(&self, candidates_each: u32, rays: u32) -> f64 {
         let Some(size) = SIZES.iter().position(|count| *count == candidates_each) else {
@@ -63,20 +63,20 @@ impl RayTimes {
         one + (most - one) * f64::from(rays - 1) / f64::from(most_rays(candidates_each) - 1)
     }
 
-    /// Time per candidate of a pool of 16 + 16, one ray chosen, in ns.
+    /// Returns the time per candidate of a pool of 16 + 16, one ray chosen, in ns.
     #[must_use]
     pub fn candidate_ns(&self) -> f64 {
         self.pool_ns(16, 1) / 32.0
     }
 
-    /// Time per candidate of a pool of 32 + 32, sixteen rays chosen, in ns.
+    /// Returns the time per candidate of a pool of 32 + 32, sixteen rays chosen, in ns.
     #[must_use]
     pub fn shared_candidate_ns(&self) -> f64 {
         self.pool_ns(32, 16) / 64.0
     }
 
-    /// Time of one ray with its standard error, in ns: by one-sample MIS, or from a pool of so many candidates of each
-    /// technique; not a number for a pool that there is not.
+    /// Returns the time of one ray with its standard error, in ns: by one-sample MIS, or from a pool of so many candidates of each
+    /// technique. The time is NaN if no such pool is measured.
     pub(crate) fn ray(&self, candidates_each: Option<u32>) -> Estimate {
         let Some(count) = candidates_each else {
             return Estimate {
@@ -93,7 +93,7 @@ impl RayTimes {
     }
 }
 
-/// Measures every model and sampler under every light; `progress` is called with the number of those done and of all.
+/// Measures every model and sampler under every light; `progress` is called with the number of those done.
 pub(crate) fn measure(
     subjects: &[RaySubject],
     lights: &[&dyn Light],
@@ -131,14 +131,14 @@ pub(crate) fn measure(
 }
 
 fn row(subject: RaySubject, at: &Shading<'_>, rounds: usize) -> RayTimes {
-    // One-sample MIS first, then each pool with one ray and with the most.
+    // One-sample MIS comes first, then each pool with one ray and with the most.
     let pools = SIZES
         .iter()
         .flat_map(|count| [1, most_rays(*count)].map(|rays| Some((*count, rays))));
     let mut contenders: Vec<Option<(u32, u32)>> = [None].into_iter().chain(pools).collect();
     let found = in_turns(&mut contenders, rounds, |contender| {
         let work = || contender.map_or_else(|| at.mis(), |(count, rays)| at.pools(count, rays));
-        // Untimed, for the caches.
+        // The first pass is not timed; it fills the caches.
         work();
         let start = Instant::now();
         let units = work();
@@ -156,7 +156,7 @@ fn row(subject: RaySubject, at: &Shading<'_>, rounds: usize) -> RayTimes {
     }
 }
 
-/// A shading point under a light, with what is drawn beforehand.
+/// Shading point under a light, with numbers and directions that are drawn beforehand.
 struct Shading<'a> {
     lit: Lit<'a>,
     xi: &'a [[f32x8; 3]],
@@ -172,7 +172,7 @@ impl Shading<'_> {
         self.lit.of_light(black_box(&self.blocks[packet % PACKETS]))
     }
 
-    /// Rays by one-sample MIS, as many of each technique; returns their number.
+    /// Computes rays by one-sample MIS, as many of each technique, and returns their number.
     #[inline(never)]
     fn mis(&self) -> usize {
         for packet in 0..CANDIDATES / 16 {
@@ -182,7 +182,7 @@ impl Shading<'_> {
         CANDIDATES
     }
 
-    /// Pools of `count` candidates of each technique and the choice of `rays` of them; returns the number of pools.
+    /// Computes pools of `count` candidates of each technique and the choice of `rays` of them, and returns the number of pools.
     #[inline(never)]
     fn pools(&self, count: u32, rays: u32) -> usize {
         let each = count as usize;
@@ -195,7 +195,7 @@ impl Shading<'_> {
             for packet in 0..packets {
                 columns.store(8 * packet, &self.of_bsdf(pool * packets + packet), count);
             }
-            // Over what is left of the last packet.
+            // The light's candidates overwrite the unused lanes of the last packet.
             for packet in 0..packets {
                 columns.store(
                     each + 8 * packet,
@@ -216,7 +216,7 @@ impl Shading<'_> {
     }
 }
 
-/// The candidates of a pool.
+/// Candidates of a pool, by column.
 struct PoolColumns {
     contribution: [[f32; ROOM]; 3],
     weight: [f32; ROOM],

@@ -1,4 +1,4 @@
-//! Throughput by number of threads: slices in chunks through rayon.
+//! Throughput by number of threads, of slices in chunks through rayon.
 
 use super::{TimedInputs, TimedOp};
 use crate::timer::quartiles;
@@ -12,35 +12,35 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::Serialize;
 use std::time::Instant;
 
-/// Directions in a chunk: as many as the inputs, over and over, so that a chunk stays in its core's cache.
+/// Times that a chunk repeats the inputs, so that it stays in its core's cache.
 const REPEATS: usize = 9;
-/// Chunks per pass: enough for every core to finish at about the same time.
+/// Number of chunks per thread and pass, enough for every core to finish at about the same time.
 const CHUNKS_A_THREAD: usize = 16;
-/// Passes that are timed on each number of threads.
+/// Number of passes that are timed on each number of threads.
 const ROUNDS: usize = 15;
 
-/// Throughput on a number of threads: a row of the table.
+/// Throughput on a number of threads, which is a row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThreadsResult {
-    /// [`TimedOp::EvalPdf`] or [`TimedOp::Sample`], through slices.
+    /// Operation that was timed through slices: [`TimedOp::EvalPdf`] or [`TimedOp::Sample`].
     pub op: TimedOp,
-    /// The model.
+    /// Name of the model.
     pub model: &'static str,
     /// Instruction set of the lanes.
     pub level: &'static str,
-    /// Threads at work.
+    /// Number of threads at work.
     pub threads: usize,
     /// Millions of directions a second, all threads together: median over the rounds.
     pub millions: f64,
     /// Speed-up over one thread: median over the rounds of the ratio within a round.
     pub speedup: f64,
-    /// First quartile of the same.
+    /// First quartile of the speed-up over the rounds.
     pub speedup_q1: f64,
-    /// Third quartile of the same.
+    /// Third quartile of the speed-up over the rounds.
     pub speedup_q3: f64,
 }
 
-/// Slices of one chunk, `N` of results.
+/// Slices of one chunk, with `N` slices of results.
 struct Chunk<const N: usize> {
     inputs: [Vec<f32>; 3],
     out: [Vec<f32>; N],
@@ -62,7 +62,7 @@ impl<const N: usize> Chunk<N> {
     }
 }
 
-/// One, two, four and so on up to all logical cores.
+/// Returns the numbers of threads: one, two, four and so on up to all logical cores.
 fn thread_counts() -> Vec<usize> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     let mut counts: Vec<usize> = core::iter::successors(Some(1), |n| Some(2 * n))
@@ -79,7 +79,7 @@ pub(super) fn run(model: ModelId, inputs: &TimedInputs) -> Result<Vec<ThreadsRes
         .iter()
         .map(|n| ThreadPoolBuilder::new().num_threads(*n).build())
         .collect();
-    // Where the system refuses threads there is nothing to report.
+    // If the system cannot start the threads, there is nothing to report.
     let Ok(pools) = pools else {
         return Ok(Vec::new());
     };
@@ -136,7 +136,7 @@ pub(super) fn run(model: ModelId, inputs: &TimedInputs) -> Result<Vec<ThreadsRes
         .collect())
 }
 
-/// Time per direction of each pool in each round, ns; the pools take turns.
+/// Returns the time per direction of each pool in each round, ns; the pools take turns.
 fn time<const N: usize>(
     pools: &[ThreadPool],
     rows: &[[f32; 3]],
@@ -158,7 +158,7 @@ fn time<const N: usize>(
             pool.install(|| chunks.par_iter_mut().with_max_len(1).for_each(&work));
             let elapsed = start.elapsed().as_secs_f64() * 1e9;
             black_box(&chunks);
-            // The first round finds the memory and wakes the threads.
+            // The first round allocates the memory and wakes the threads, and is not counted.
             if round > 0 {
                 ns.push(elapsed / directions);
             }

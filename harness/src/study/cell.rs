@@ -1,4 +1,4 @@
-//! One cell of the grid: every sampler of both models, as rows of the study.
+//! Cell of the grid: every sampler of both models, as rows of the study.
 
 use super::grid::Cell;
 use crate::efficiency::PHI_O_DEG;
@@ -10,10 +10,10 @@ use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::light::Light;
 use hairis_instruments::sequence::stream_id;
 
-/// The figures of a cell: models outermost, then samplers, then lights; after them those of perfect sampling, models, then
-/// lights, if the sampler it is estimated from is among `samplers`.
+/// Measures a cell: models outermost, then samplers, then lights. If the sampler that perfect sampling is estimated from is among
+/// `samplers`, the figures of perfect sampling come after them: models, then lights.
 ///
-/// The streams are keyed by what the cell is, not by where it stands or who computes it.
+/// The streams are keyed by the values of the cell, not by its index or by the thread that computes it.
 pub(super) fn measure(
     seed: u64,
     budget: SampleBudget,
@@ -29,7 +29,7 @@ pub(super) fn measure(
     Ok(of_subjects(seed, budget, lights, cell, &params, subjects))
 }
 
-/// The figures of the Cauchy model with parameters of its own in place of the cell's: samplers outermost, then lights.
+/// Measures the Cauchy model with parameters of its own in place of the cell's: samplers outermost, then lights.
 pub(super) fn measure_refit(
     seed: u64,
     budget: SampleBudget,
@@ -38,14 +38,14 @@ pub(super) fn measure_refit(
     params: &HairParams,
     samplers: &[Sampler],
 ) -> Vec<Measured> {
-    // Streams after those of all models.
+    // The streams come after those of all models.
     let model = ModelKind::ALL.len() as u64;
     let subject = |sampler: &Sampler| (model, ModelKind::Cauchy, *sampler);
     let subjects = samplers.iter().map(subject);
     of_subjects(seed, budget, lights, cell, params, subjects)
 }
 
-/// The figures of subjects, each with a number among the streams of models; after them those of perfect sampling.
+/// Measures subjects, each with a number among the streams of models; after them comes perfect sampling.
 fn of_subjects(
     seed: u64,
     budget: SampleBudget,
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn figures_agree_with_quadrature() {
         let lights = [Lights::default().all(), vec![&Constant]].concat();
-        // Narrow hair that hardly meets the sun; the default; wide hair at grazing incidence.
+        // Narrow hair that rarely hits the sun; the default; wide hair at grazing incidence.
         for (beta_r, theta_o) in [(2.5, 0.0), (7.5, 45.0), (20.0, 85.0)] {
             let cell = cell_of(beta_r, theta_o);
             let params = cell.params().expect("accepted");

@@ -1,4 +1,4 @@
-//! Checks of every row.
+//! Checks of every row of a finished study.
 
 use super::estimator::name;
 use super::finished::Study;
@@ -8,8 +8,8 @@ use crate::variance::check::{self, Checked};
 use hairis_instruments::light::Constant;
 
 impl Study {
-    /// A line for each figure that cannot be right: a weight above its proven bound, samplers of a model that disagree on the
-    /// mean under the constant light, and means of rays from candidates that disagree with those of samples.
+    /// Returns a line for each figure that cannot be right: a weight above its proven bound, samplers of a model that disagree on the mean
+    /// under the constant light, and means of rays from candidates that disagree with those of samples.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
         let rows = self.rows();
@@ -19,7 +19,7 @@ impl Study {
             Checked {
                 place: format!("cell {cell}, {model} {}, {light}", name(strategy)),
                 group: format!("{cell} {model}"),
-                // Perfect sampling has directions of another, and their mean.
+                // Perfect sampling uses directions of another sampler, and their mean.
                 is_constant: light == Constant::NAME && strategy.is_some(),
                 measured: row.measured,
             }

@@ -6,13 +6,13 @@ use hairis_instruments::stats::Estimate;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sign {
     Above,
-    /// Within two standard errors.
+    /// Equal within two standard errors.
     Unsure,
     Below,
 }
 
 impl Sign {
-    /// Comparison of a ratio with 1.
+    /// Compares a ratio with 1.
     pub(super) fn of(ratio: Estimate) -> Self {
         match ratio.value - 1.0 {
             d if d > 2.0 * ratio.standard_error => Self::Above,
@@ -22,14 +22,14 @@ impl Sign {
     }
 }
 
-/// No work after a sample: its time alone counts.
+/// Time of the work after a sample, if none is counted.
 pub(super) const NOTHING: Estimate = Estimate::exact(0.0);
 
-/// The time of `base` over that of `other` when each is followed by the same `more`.
+/// Returns the time of `base` over that of `other` if each is followed by the same `more`.
 pub(super) fn time_ratio([base, other]: [Estimate; 2], more: Estimate) -> Estimate {
     let [a, b] = [base, other].map(|of| of.value + more.value);
     let value = a / b;
-    // An error of what follows moves both times, and the ratio by the difference.
+    // An error of the time that follows changes both times, and the ratio by the difference.
     let relative = (base.standard_error / a).hypot(other.standard_error / b);
     let relative = relative.hypot(more.standard_error * (1.0 / a - 1.0 / b));
     Estimate {
@@ -38,8 +38,7 @@ pub(super) fn time_ratio([base, other]: [Estimate; 2], more: Estimate) -> Estima
     }
 }
 
-/// Cells that are won, undecided and lost: gains in V, those of cells that are unsure being `None`, against the ratio of the
-/// times.
+/// Counts cells that are won, undecided and lost, given the gains in V and the ratio of the times. A gain of `None` is undecided.
 pub(super) fn count_cells(
     gains: impl Iterator<Item = Option<Estimate>>,
     time: Estimate,
@@ -88,7 +87,7 @@ mod tests {
             (with.standard_error / 0.75 - (0.1_f64 / 30.0).hypot(0.1 / 40.0)).abs() < 1e-15,
             "{with:?}"
         );
-        // By what the ratio changes when the time that follows is one error longer.
+        // The change of the ratio if the time that follows is one error longer.
         let moved = time_ratio([base, other], of(20.001, 0.0)).value - with.value;
         let error = time_ratio([of(10.0, 0.0), of(20.0, 0.0)], of(20.0, 0.001)).standard_error;
         assert!((error / moved.abs() - 1.0).abs() < 1e-4, "{error} {moved}");

@@ -1,27 +1,27 @@
-//! Estimators: a model, and how its directions are drawn.
+//! Estimators: a model, with the strategy by which its directions are drawn.
 
 use super::grid::Cell;
 use crate::sampler::{Sampler, weight_bound};
 use crate::subject::ModelKind;
 use crate::variance::Measured;
 
-/// The sampler of a row; `None`: perfect sampling of the hair, see [`variance`](crate::variance).
+/// Sampler of a row, or `None` for perfect sampling of the hair; see [`variance`](crate::variance).
 pub(super) type Strategy = Option<Sampler>;
 
-/// A model, and how its directions are drawn.
+/// Model, with the strategy by which its directions are drawn.
 pub(super) type Estimator = (ModelKind, Strategy);
 
-/// Every strategy, in the order of reports.
+/// Returns every strategy, in the order of reports.
 pub(super) fn strategies() -> impl Iterator<Item = Strategy> + Clone {
     samplers().chain([None])
 }
 
-/// Samplers that can be run.
+/// Returns the samplers that can be run.
 pub(super) fn samplers() -> impl Iterator<Item = Strategy> + Clone {
     Sampler::ALL.into_iter().map(Some)
 }
 
-/// Each of some strategies on each model.
+/// Returns each of some strategies on each model.
 pub(super) fn on_each_model(
     of: impl Iterator<Item = Strategy> + Clone,
 ) -> impl Iterator<Item = Estimator> + Clone {
@@ -30,17 +30,17 @@ pub(super) fn on_each_model(
         .flat_map(move |model| of.clone().map(move |strategy| (model, strategy)))
 }
 
-/// Name in reports and in rows.
+/// Returns the name of a strategy in reports and in rows.
 pub(super) fn name(strategy: Strategy) -> &'static str {
     strategy.map_or("perfect", Sampler::name)
 }
 
-/// The published sampler of the same model, which gains are measured against.
+/// Returns the published sampler on the same model, which gains are measured against.
 pub(super) const fn published((model, _): Estimator) -> Estimator {
     (model, Some(Sampler::Published))
 }
 
-/// Place of a row within its cell: perfect sampling comes after all samplers of all models.
+/// Returns the index of a row within its cell. Perfect sampling comes after all samplers of all models.
 pub(super) const fn place((model, strategy): Estimator, light: usize, lights: usize) -> usize {
     let line = match strategy {
         Some(sampler) => model as usize * Sampler::ALL.len() + sampler as usize,
@@ -49,7 +49,7 @@ pub(super) const fn place((model, strategy): Estimator, light: usize, lights: us
     line * lights + light
 }
 
-/// Sets the proven bounds on the weights in a cell: they depend on no light.
+/// Sets the proven bounds on the weights in a cell, which do not depend on the light.
 pub(super) fn set_bounds(cell: &Cell, measured: &mut [Measured], lights: usize) {
     let (params, theta_o) = (cell.params().ok(), f64::from(cell.theta_o_deg).to_radians());
     for (model, strategy) in on_each_model(samplers()) {

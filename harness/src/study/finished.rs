@@ -1,4 +1,4 @@
-//! A finished study, joined from its parts.
+//! Finished study, joined from its parts.
 
 use super::estimator::set_bounds;
 use super::part::{self, FORMAT, Finished, Header, Read, refuse};
@@ -20,26 +20,26 @@ use hairis_instruments::stats::Estimate;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Every cell of a study, in the order of the grid.
+/// Study that is finished: every cell, in the order of the grid.
 #[derive(Clone, Debug)]
 pub struct Study {
     pub(super) header: Header,
     pub(super) cells: Vec<Vec<Measured>>,
     /// Rows of the materials, each seen from the inclinations of the grid in turn.
     pub(super) materials: Vec<Vec<Measured>>,
-    /// Times on this machine; unknown until [`time`](Self::time).
+    /// Times on this machine, unknown until [`time`](Self::time).
     pub(super) times: Times,
-    /// V on the refitted Cauchy model; unknown until [`refit`](Self::refit).
+    /// V on the refitted Cauchy model, unknown until [`refit`](Self::refit).
     pub(super) refits: Refits,
 }
 
 impl Study {
-    /// The study whose cells are in `parts`, each with the file it was read from.
+    /// Joins `parts` to a study, each with the file that it was read from.
     ///
     /// # Errors
     ///
-    /// [`Error::Part`] if they are not of one study, or of one that this program does not know; [`Error::Missing`],
-    /// naming what, if cells are missing.
+    /// Returns [`Error::Part`] if the parts do not belong to one study, or belong to one of another version; returns [`Error::Missing`],
+    /// which names the missing parts, if cells are missing.
     pub fn join(parts: &[(PathBuf, Read)]) -> Result<Self, Error> {
         let Some((first, Read { header, .. })) = parts.first() else {
             return Err(Error::Missing("no parts".to_owned()));
@@ -134,7 +134,7 @@ impl Study {
         })
     }
 
-    /// A study of the same figures in each cell, with V given by the place of a row and the light.
+    /// Returns a study of the same figures in each cell, with V given by the index of a row and the light.
     #[cfg(test)]
     pub(crate) fn of_figures(header: Header, v: &dyn Fn(usize, &str) -> f64) -> Self {
         let of = |value| Estimate {
@@ -169,11 +169,11 @@ impl Study {
         }
     }
 
-    /// Reads every part file in `dirs` and joins them.
+    /// Reads every part file in `dirs` and joins the parts.
     ///
     /// # Errors
     ///
-    /// As [`join`](Self::join), and [`Error::Part`] if a file cannot be read or is damaged.
+    /// Returns the errors of [`join`](Self::join), and [`Error::Part`] if a file cannot be read or is damaged.
     pub fn read(dirs: &[PathBuf]) -> Result<Self, Error> {
         let mut parts: Vec<(PathBuf, Read)> = Vec::new();
         for dir in dirs {
@@ -185,38 +185,38 @@ impl Study {
         Self::join(&parts)
     }
 
-    /// Header: inputs that the rows depend on.
+    /// Returns the header, which holds the inputs that the rows depend on.
     #[must_use]
     pub const fn header(&self) -> &Header {
         &self.header
     }
 
-    /// The cells it is of.
+    /// Returns the grid whose cells the study has.
     #[must_use]
     pub const fn grid(&self) -> Grid {
         Grid::of(self.header.quick)
     }
 
-    /// Measures the times of this machine, with nothing else at work. Without an environment its look-up is not known.
+    /// Measures the times of this machine, with nothing else at work. Without an environment, the time of its look-up stays unknown.
     pub fn time(&mut self, environment: Option<&Environment>) {
         let Header { seed, quick, .. } = self.header;
         self.times = Times::measure(seed, quick, environment).with_rays(seed, quick, environment);
     }
 
-    /// Whether there are materials beside the hair of the grid.
+    /// Returns true if there are materials beside the hair of the grid.
     #[must_use]
     pub const fn has_materials(&self) -> bool {
         !self.materials.is_empty()
     }
 
-    /// Whether the environment is the one among the lights.
+    /// Returns true if the environment is the one among the lights of the study.
     #[must_use]
     pub fn has_environment(&self, environment: &Environment) -> bool {
         self.header.environment == part::digest(environment)
     }
 }
 
-/// Missing parts of a study, in words; `None` if it is complete.
+/// Returns the missing parts of a study, in words; `None` if it is complete.
 fn missing(shards: &[Shard], has: impl Fn(usize) -> bool, cells: usize) -> Option<String> {
     let (mut absent, mut unfinished) = (Vec::new(), Vec::new());
     for shard in Shard::all(shards[0].of()) {

@@ -1,14 +1,14 @@
-//! The parameter grid.
+//! Parameter grid of the study: axes, cells, and the hair of a cell.
 
 use crate::efficiency::with_beta;
 use hairis::params::HairDesc;
 use hairis::{HairParams, ParamError};
 use hairis_instruments::columns::Columns;
 
-/// Values of each axis. A cell is one of their combinations; the last axis runs fastest.
+/// Values of each axis. Every combination of values is a cell, and the last axis runs fastest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
-    /// Width of R, in degrees; `beta_tt` is half of it and `beta_trt` twice.
+    /// Width of R, in degrees; `beta_tt` is half of this width, and `beta_trt` is twice.
     pub beta_r_deg: &'static [f32],
     /// Azimuthal width of TT, in degrees.
     pub gamma_tt_deg: &'static [f32],
@@ -22,30 +22,30 @@ pub struct Grid {
     pub theta_o_deg: &'static [f32],
 }
 
-/// One cell of the grid: hair, and the inclination it is seen from. Shifts and colours are those of the default hair.
+/// Cell of the grid: hair, and the inclination that it is seen from. Shifts and colours are those of the default hair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// Place in the grid, from 0.
+    /// Index in the grid, from 0.
     pub index: usize,
-    /// See [`Grid::beta_r_deg`].
+    /// Width of R, in degrees; see [`Grid::beta_r_deg`].
     pub beta_r_deg: f32,
-    /// See [`Grid::gamma_tt_deg`].
+    /// Azimuthal width of TT, in degrees.
     pub gamma_tt_deg: f32,
-    /// See [`Grid::gamma_g_deg`].
+    /// Azimuthal width of a glint, in degrees.
     pub gamma_g_deg: f32,
-    /// See [`Grid::phi_g_deg`].
+    /// Half angle between the glints, in degrees.
     pub phi_g_deg: f32,
-    /// See [`Grid::intensity_g`].
+    /// Strength of the glints.
     pub intensity_g: f32,
-    /// See [`Grid::theta_o_deg`].
+    /// Inclination of the viewer, in degrees.
     pub theta_o_deg: f32,
 }
 
-/// The values of an axis, and that of a cell.
+/// Values of an axis, and the function that returns the value of a cell.
 pub(crate) type GridAxis = (&'static [f32], fn(&Cell) -> f32);
 
 impl Grid {
-    /// All 3024 cells.
+    /// Grid of the whole study, with 3024 cells.
     pub const FULL: Self = Self {
         beta_r_deg: &[2.5, 5.0, 7.5, 10.0, 15.0, 20.0],
         gamma_tt_deg: &[5.0, 10.0, 25.0, 45.0],
@@ -55,7 +55,7 @@ impl Grid {
         theta_o_deg: &[0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0],
     };
 
-    /// 48 of them, from narrow hair to wide, the default hair among them.
+    /// Grid of the short run: 48 of the cells, from narrow hair to wide, the default hair among them.
     pub const QUICK: Self = Self {
         beta_r_deg: &[2.5, 7.5, 20.0],
         gamma_tt_deg: &[10.0, 45.0],
@@ -65,23 +65,23 @@ impl Grid {
         theta_o_deg: &[0.0, 45.0, 75.0, 85.0],
     };
 
-    /// Grid of the short run, or of the whole one.
+    /// Returns the grid of the short run, or of the whole one.
     #[must_use]
     pub const fn of(quick: bool) -> Self {
         if quick { Self::QUICK } else { Self::FULL }
     }
 
-    /// The cells, in order.
+    /// Returns the cells of the grid, in order.
     pub fn cells(self) -> impl Iterator<Item = Cell> {
         (0..self.len()).map(move |index| self.cell(index))
     }
 
-    /// The axis of the width of R.
+    /// Returns the axis of the width of R.
     pub(crate) fn widths(&self) -> GridAxis {
         (self.beta_r_deg, |cell| cell.beta_r_deg)
     }
 
-    /// The axis of the inclination of the viewer.
+    /// Returns the axis of the inclination of the viewer.
     pub(crate) fn inclinations(&self) -> GridAxis {
         (self.theta_o_deg, |cell| cell.theta_o_deg)
     }
@@ -97,23 +97,23 @@ impl Grid {
         ]
     }
 
-    /// Number of cells.
+    /// Returns the number of cells in the grid.
     #[must_use]
     pub fn len(&self) -> usize {
         self.axes().iter().map(|axis| axis.len()).product()
     }
 
-    /// Whether an axis has no values.
+    /// Returns true if an axis has no values, so that there are no cells.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The cell at `index`, which is taken modulo the number of cells.
+    /// Returns the cell at `index`, which is taken modulo the number of cells.
     ///
     /// # Panics
     ///
-    /// If an axis has no values.
+    /// Panics if an axis has no values.
     #[must_use]
     pub fn cell(&self, index: usize) -> Cell {
         let mut rest = index;
@@ -143,7 +143,7 @@ impl Grid {
 }
 
 impl Cell {
-    /// The values of the axes, in the order of [`Grid`]'s fields.
+    /// Returns the values of the axes, in the order of [`Grid`]'s fields.
     #[must_use]
     pub const fn values(&self) -> [f32; 6] {
         [
@@ -156,11 +156,11 @@ impl Cell {
         ]
     }
 
-    /// The hair.
+    /// Returns the parameters of the cell's hair.
     ///
     /// # Errors
     ///
-    /// Never for the cells of [`Grid::FULL`] and [`Grid::QUICK`]: all of them are within the ranges accepted.
+    /// Returns an error if a value is out of its range, which no cell of [`Grid::FULL`] or [`Grid::QUICK`] is.
     pub fn params(&self) -> Result<HairParams, ParamError> {
         let base = with_beta(&HairParams::bright(), self.beta_r_deg)?;
         HairParams::new(&HairDesc {
@@ -183,7 +183,7 @@ const AXES: [&str; 6] = [
     "theta_o_deg",
 ];
 
-/// The columns that say what cell a row is of.
+/// Returns the columns that state the cell of each row.
 pub(crate) fn columns_of<'a>(cells: impl Iterator<Item = &'a Cell> + Clone) -> Columns {
     let columns = Columns::default().whole("cell", cells.clone().map(|cell| cell.index));
     (0..)

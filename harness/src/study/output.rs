@@ -1,4 +1,4 @@
-//! The files of a finished study.
+//! Files of a finished study, and the columns of its efficiencies.
 
 use super::estimator::published;
 use super::rays;
@@ -19,11 +19,11 @@ pub use super::finished::Study;
 pub use super::times::Times;
 
 impl Study {
-    /// The content of a `claims.json` for the report of this study.
+    /// Parses the content of a `claims.json` for the report of this study.
     ///
     /// # Errors
     ///
-    /// The reason why it has no place there.
+    /// Returns the reason, in words, if the content is damaged or belongs to a run with other settings.
     pub fn claims(&self, content: &[u8]) -> Result<Value, String> {
         let claims = serde_json::from_slice(content)
             .ok()
@@ -41,7 +41,7 @@ impl Study {
         Ok(claims)
     }
 
-    /// The rows' efficiencies: what depends on the machine as well.
+    /// Returns the rows' efficiencies, which depend on the machine as well.
     ///
     /// | column | what it is |
     /// |---|---|
@@ -51,16 +51,15 @@ impl Study {
     /// | `ns_at_N`, `efficiency_at_N` | time of a sample, ns, and `1 / (V seconds)`, for N of 1, 4 and 16 samples per shading point |
     /// | `gain_at_N`, `gain_at_N_se` | by what factor less variance than `published` it has in equal time |
     /// | `look_up_efficiency_at_N` .. `look_up_gain_at_N_se` | the three with the look-up counted in every sample's time |
-    ///
     /// | `ray_ns_mis`, `ray_ns_4_4`, `ray_ns_8_8` and their `_se` | time of a ray without its tracing, ns |
     /// | `gain_4_4_at_P_us`, `gain_8_8_at_P_us` and their `_se` | efficiency of such a ray over one-sample MIS where a ray costs P of 0.1, 0.3, 1 and 3 µs, half of the directions visible |
     ///
-    /// Of `perfect`, which has no time, the first two lines alone, without a break-even where its V is 0. A look-up that was
-    /// not timed ([`Times::measure`]) leaves its columns empty.
+    /// Rows of `perfect`, which has no time, have only the columns of the first two lines, without a break-even if V is 0. A look-up that
+    /// was not timed ([`Times::measure`]) leaves its columns empty.
     #[must_use]
     pub fn efficiencies(&self) -> Columns {
         let rows = self.rows();
-        // Against itself: exactly 1.
+        // The ratio of the published sampler to itself is exactly 1.
         let is_published = |row: &Row<'_>| row.of == published(row.of);
         let against_published = |row: &Row<'_>| match is_published(row) {
             true => Estimate::exact(1.0),
@@ -114,7 +113,7 @@ impl Study {
     ///
     /// # Errors
     ///
-    /// [`Error::Output`] for the first that cannot be written.
+    /// Returns [`Error::Output`] for the first file that cannot be written.
     pub fn writable(dir: &Path, has_materials: bool) -> Result<(), Error> {
         let mut files = vec!["times.csv", "refitted.csv", "study.json"];
         files.extend(["study.csv", "efficiency.csv", "difference.csv"]);
@@ -127,13 +126,13 @@ impl Study {
         files.iter().try_for_each(|name| writable(&dir.join(name)))
     }
 
-    /// Writes `study.csv` (the rows), `efficiency.csv`, `difference.csv` (how far apart the models are), `refitted.csv` (the fitted
-    /// Cauchy model), `times.csv` and `study.json` (the settings) into `dir`, `materials.csv` (the rows of the materials) if there are any, with feature `parquet` the first three as `.parquet` too, each as a whole or not
-    /// at all.
+    /// Writes the files of the study into `dir`, each as a whole or not at all: `study.csv` (the rows), `efficiency.csv`, `difference.csv`
+    /// (the differences in look), `refitted.csv` (the fitted Cauchy model), `times.csv` and `study.json` (the settings). If there are
+    /// materials, writes `materials.csv` (their rows). With the feature `parquet`, writes the first three as `.parquet` too.
     ///
     /// # Errors
     ///
-    /// [`Error::Output`] for the first that cannot be written.
+    /// Returns [`Error::Output`] for the first file that cannot be written.
     pub fn write(&self, dir: &Path, difference: &Difference) -> Result<(), Error> {
         whole(&dir.join("times.csv"), |out| {
             self.times.columns().write_csv(out)
@@ -165,7 +164,7 @@ impl Study {
 
 #[cfg(feature = "parquet")]
 impl Study {
-    /// The header, as metadata.
+    /// Returns the header, as metadata.
     fn notes(&self) -> Vec<(String, String)> {
         let header = serde_json::to_value(&self.header).unwrap_or_default();
         let fields = header.as_object().into_iter().flatten();

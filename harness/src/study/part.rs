@@ -1,7 +1,7 @@
-//! The part file: finished cells, one per line, after a header line.
+//! Part files: finished cells, one per line, after a header line.
 //!
-//! It is only ever appended to, a whole line at a time. A process that is killed leaves at most its last line torn:
-//! the next run drops that line and computes its cell again. Each line ends in a checksum of the rest of it.
+//! Part files are only ever appended to, a whole line at a time. A process that is killed leaves at most its last line torn; the next run
+//! drops that line and computes its cell again. Each line ends in a checksum of the rest of the line.
 
 pub use crate::sealed::line;
 
@@ -18,69 +18,69 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-/// First word of every part file: the layout of its lines.
+/// First word of every part file, which stands for the layout of its lines.
 pub const FORMAT: &str = "hairis-study-4";
 
-/// Header of a part file. Parts of one study agree in all of it except the shard.
+/// Header of a part file. Parts of one study agree in every field except the shard.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Header {
-    /// [`FORMAT`].
+    /// Layout of the lines, which is [`FORMAT`] in this version.
     pub format: String,
     /// Version of the program.
     pub version: String,
-    /// Commit of the program, with "+changes" if its files differed from it.
+    /// Commit of the program, with "+changes" if the files differed from the commit.
     pub commit: String,
-    /// Instruction set of the eight lanes, and those the rest was compiled for: last digits depend on both.
+    /// Instruction set of the eight lanes, and those the rest was compiled for. Last digits depend on both.
     pub level: String,
-    /// Whether it is the short run.
+    /// Whether this is the short run.
     pub quick: bool,
     /// Seed of every stream.
     pub seed: u64,
-    /// Samples of each sampler of each model in a cell.
+    /// Number of samples of each sampler of each model in a cell.
     pub samples: usize,
-    /// Samples of each light in a cell.
+    /// Number of samples of each light in a cell.
     pub light_samples: usize,
-    /// Pools of 32 + 32 candidates of each sampler and light in a cell; none in parts of earlier formats.
+    /// Number of pools of 32 + 32 candidates of each sampler and light in a cell; none in parts of earlier formats.
     #[serde(default)]
     pub pools: usize,
     /// Digest of the environment's pixels.
     pub environment: String,
     /// Names of the models, in the order of the rows.
     pub models: Vec<String>,
-    /// Names of the samplers.
+    /// Names of the samplers, in the order of the rows.
     pub samplers: Vec<String>,
-    /// Names of the lights.
+    /// Names of the lights, in the order of the rows.
     pub lights: Vec<String>,
-    /// Cells of the grid.
+    /// Number of cells of the grid.
     pub cells: usize,
-    /// Materials beside the hair of the grid, whose cells follow; none in earlier versions.
+    /// Materials beside the hair of the grid, whose cells follow those of the grid; none in earlier versions.
     #[serde(default)]
     pub materials: Vec<MaterialKey>,
-    /// The part, as `I/N`.
+    /// Shard that the part holds, as `I/N`.
     pub shard: String,
 }
 
-/// Digest of an environment in a header.
+/// Returns the digest of an environment, as headers have it.
 pub(super) fn digest(environment: &Environment) -> String {
     format!("{:016x}", environment.digest())
 }
 
 impl Header {
-    /// Rows of a cell: those of the samplers and of perfect sampling.
+    /// Returns the number of rows of a cell, which are those of the samplers and of perfect sampling.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.models.len() * (self.samplers.len() + 1) * self.lights.len()
     }
 
-    /// Cells of the grid and of the materials.
+    /// Returns the number of cells of the grid and of the materials together.
     #[must_use]
     pub fn work(&self) -> usize {
         let poses = Grid::of(self.quick).theta_o_deg.len();
         self.cells.saturating_add(poses * self.materials.len())
     }
 
-    /// Rows of the cell with this number.
+    /// Returns the number of rows of the cell with this index.
     fn rows_of(&self, cell: usize) -> usize {
         let Some(place) = cell.checked_sub(self.cells) else {
             return self.rows();
@@ -90,12 +90,12 @@ impl Header {
         material.map_or(0, |key| (key.samplers.len() + 1) * self.lights.len())
     }
 
-    /// The first field in which `other` differs, with its value here and there, if one does; the shard may.
+    /// Returns the first field in which `other` differs, with its value here and there, or `None` if no field but the shard differs.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Option<[String; 3]> {
         let fields = |of: &Self| {
             let mut fields = serde_json::to_value(of).unwrap_or_default();
-            // In a line of text their names say enough, unless they are the same.
+            // In an error message the names suffice, unless they are the same.
             if self
                 .materials
                 .iter()
@@ -117,11 +117,11 @@ impl Header {
             })
     }
 
-    /// The shard.
+    /// Parses the shard of the part.
     ///
     /// # Errors
     ///
-    /// When it is none.
+    /// Returns the reason, in words, if the header's shard is invalid.
     pub fn shard(&self) -> Result<Shard, String> {
         self.shard
             .parse()
@@ -129,17 +129,17 @@ impl Header {
     }
 }
 
-/// Numbers in a row of a cell.
+/// Count of the numbers in a row of a cell.
 const NUMBERS: usize = 15;
 
-/// A finished cell: for each of its rows mean, V and divergence, each with its standard error, the largest weight and
-/// the largest contribution; then V of one ray by one-sample MIS and from each size of pool, each with its standard error, and
-/// the bias of pools. What is no number is `None`.
+/// Figures of a finished cell, row by row: mean, V and divergence, each with its standard error, the largest weight and the largest
+/// contribution; then V of one ray by one-sample MIS and from each size of pool, each with its standard error, and the bias of pools. NaN
+/// and infinity are stored as `None`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finished {
-    /// Place of the cell in the grid, or behind it.
+    /// Index of the cell in the grid, or behind it for materials.
     pub cell: usize,
-    /// Its rows: models outermost, then samplers, then lights; after them those of perfect sampling, models, then lights.
+    /// Rows of the cell: models outermost, then samplers, then lights; after them those of perfect sampling, models, then lights.
     pub rows: Vec<[Option<f64>; NUMBERS]>,
 }
 
@@ -194,22 +194,22 @@ impl Finished {
     }
 }
 
-/// A part file that is read to its end.
+/// Content of a part file, read to its end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Read {
-    /// Its first line.
+    /// Header from the first line.
     pub header: Header,
-    /// Its cells, in the order in which they were finished.
+    /// Cells, in the order in which they were finished.
     pub finished: Vec<Finished>,
-    /// Bytes up to the end of the last whole line.
+    /// Number of bytes up to the end of the last whole line.
     whole: usize,
 }
 
-/// The part files in `dir`, by name.
+/// Returns the part files in `dir`, by name.
 ///
 /// # Errors
 ///
-/// [`Error::Part`] if the folder cannot be read or holds none.
+/// Returns [`Error::Part`] if the folder cannot be read or holds no part file.
 pub fn find(dir: &Path) -> Result<Vec<PathBuf>, Error> {
     let paths = |entries: fs::ReadDir| {
         entries
@@ -233,25 +233,25 @@ pub fn find(dir: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(found)
 }
 
-/// Reads a part file. A torn last line is left out.
+/// Reads a part file, except for a last line that is torn.
 ///
 /// # Errors
 ///
-/// [`Error::Part`] if it cannot be read, is none, or is damaged elsewhere than at its end.
+/// Returns [`Error::Part`] if the file cannot be read, is not a part file, or is damaged elsewhere than at its end.
 pub fn read(path: &Path) -> Result<Read, Error> {
     let bytes = fs::read(path).map_err(|source| refuse(path, format!("cannot read: {source}")))?;
     parse(path, &bytes)?
         .ok_or_else(|| refuse(path, "is no part of a study: its header line is missing"))
 }
 
-/// The part in `bytes`; `None` if not even its first line is whole.
+/// Parses the part in `bytes`; `None` if not even its first line is whole.
 fn parse(path: &Path, bytes: &[u8]) -> Result<Option<Read>, Error> {
     let Some(last) = bytes.iter().rposition(|byte| *byte == b'\n') else {
         return Ok(None);
     };
     let mut lines = bytes[..last].split(|byte| *byte == b'\n');
     let first = lines.next().unwrap_or_default();
-    // Parts of earlier versions have no checksums; their format tells them apart.
+    // Parts of earlier versions have no checksums; their format distinguishes them.
     let (first, is_right) = unseal(first).unwrap_or_else(|| (first.to_vec(), true));
     if !is_right {
         return Err(refuse(
@@ -305,7 +305,7 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Option<Read>, Error> {
     }))
 }
 
-/// A part, or a folder of them, that cannot be used.
+/// Returns the error for a part, or a folder of parts, that cannot be used.
 pub(super) fn refuse(path: &Path, problem: impl Into<String>) -> Error {
     Error::Part {
         path: path.to_owned(),
@@ -313,16 +313,17 @@ pub(super) fn refuse(path: &Path, problem: impl Into<String>) -> Error {
     }
 }
 
-/// A part file that is being written.
+/// Part file that is being written, one finished cell at a time.
 #[derive(Debug)]
 pub struct Part(Appended);
 
 impl Part {
-    /// Opens the part file of `header` in `dir`, or begins it; also gives the cells it has.
+    /// Opens the part file of `header` in `dir`, or begins it. Returns the cells that it has as well.
     ///
     /// # Errors
     ///
-    /// [`Error::Output`] if it cannot be written; [`Error::Part`] if it is of another study, damaged, or in use.
+    /// Returns [`Error::Output`] if the file cannot be written, and [`Error::Part`] if the file belongs to another study, is damaged, or is
+    /// in use.
     pub fn open(dir: &Path, header: &Header) -> Result<(Self, Vec<Finished>), Error> {
         let shard = header.shard().map_err(Error::Usage)?;
         let path = dir.join(format!("cells-{}-of-{}.jsonl", shard.index(), shard.of()));
@@ -351,17 +352,17 @@ impl Part {
         Ok((Self(file), finished))
     }
 
-    /// The file.
+    /// Returns the path of the part file.
     #[must_use]
     pub fn path(&self) -> &Path {
         self.0.path()
     }
 
-    /// Appends a cell.
+    /// Appends a finished cell to the file, as a line with its checksum.
     ///
     /// # Errors
     ///
-    /// [`Error::Output`] if it cannot be written.
+    /// Returns [`Error::Output`] if the line cannot be written.
     pub fn keep(&self, finished: &Finished) -> Result<(), Error> {
         let line = line(finished).map_err(Error::output(self.path()))?;
         self.0.append(&line)

@@ -8,7 +8,7 @@ use crate::variance::{By, MIS, POOLS, RAYS, half_visible};
 use hairis_instruments::columns::Columns;
 use hairis_instruments::stats::Estimate;
 
-/// Adds the columns of times and of gains over one-sample MIS in equal time, half of the directions visible.
+/// Adds the columns of times and of gains over one-sample MIS in equal time, with half of the directions visible.
 pub(super) fn efficiencies(mut columns: Columns, rows: &[Row<'_>], study: &Study) -> Columns {
     let ns: Vec<_> = rows
         .iter()
@@ -30,7 +30,7 @@ pub(super) fn efficiencies(mut columns: Columns, rows: &[Row<'_>], study: &Study
     columns
 }
 
-/// Time of a ray by the first over that by the second, each with its tracing at this price.
+/// Returns the time of a ray by the first over that by the second, each with its tracing at this price.
 pub(super) fn times_at(pair: [Estimate; 2], price_us: f64) -> Estimate {
     time_ratio(pair, Estimate::exact(1e3 * price_us))
 }

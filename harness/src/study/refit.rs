@@ -1,4 +1,4 @@
-//! Samples that the all-Cauchy model saves once its parameters are fitted to the look of the Gaussian one.
+//! Refits: samples that the all-Cauchy model saves once its parameters are fitted to the look of the Gaussian one.
 
 use super::cell::measure_refit;
 use super::finished::Study;
@@ -19,20 +19,21 @@ use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::{Table, number};
 use hairis_variants::Parameters as _;
 
-/// V on the refitted Cauchy model in a cell: of each of [`TOLD`], light by light.
+/// V on the refitted Cauchy model in a cell, for each of [`TOLD`], light by light.
 type RefitVariances = [Vec<Estimate>; TOLD.len()];
 
-/// V on the refitted Cauchy model, by cell. Lights without their environment are unknown.
+/// V on the refitted Cauchy model, by cell. V is unknown under an environment that is not given.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Refits(Vec<RefitVariances>);
 
 impl Study {
-    /// Measures V on the Cauchy model of [`Width::Refitted`](crate::difference::Width::Refitted). Without an environment its
-    /// V is not known. Figures are taken from `journal`, or put there; `progress` gets the numbers of cells, done and all.
+    /// Measures V on the Cauchy model of [`Width::Refitted`](crate::difference::Width::Refitted). Without an environment, V under it stays
+    /// unknown. Figures that `journal` holds are taken from it, and new ones are added. `progress` is called with the numbers of cells done
+    /// and of all cells.
     ///
     /// # Errors
     ///
-    /// If `journal` cannot be read or written.
+    /// Returns an error if `journal` cannot be read or written.
     pub fn refit(
         &mut self,
         difference: &Difference,
@@ -86,14 +87,14 @@ impl Study {
         Ok(())
     }
 
-    /// V of a sampler of [`TOLD`] on the Gaussian model over that on the refitted Cauchy model; `None` if no cell is sure.
+    /// Returns V of a sampler of [`TOLD`] on the Gaussian model over that on the refitted Cauchy model; `None` if no cell is sure.
     pub(super) fn gain_of_refit(&self, sampler: usize, light: usize) -> Option<Gain> {
         let gaussian = (ModelKind::Gaussian, Some(TOLD[sampler]));
         let rows = self.rows_of(gaussian, light).zip(&self.refits.0);
         gain(rows.map(|(row, refit)| [row.v(), refit[sampler][light]]))
     }
 
-    /// The table of samples saved, with equal widths and refitted; `None` before [`refit`](Self::refit).
+    /// Returns the table of samples saved, with equal widths and refitted; `None` before [`refit`](Self::refit).
     pub(super) fn refit_table(&self) -> Option<Table> {
         if self.refits.0.is_empty() {
             return None;
@@ -133,7 +134,7 @@ impl Study {
         ))
     }
 
-    /// V on the refitted Cauchy model, and its parameters.
+    /// Returns V on the refitted Cauchy model, and its parameters, as columns.
     ///
     /// | column | content |
     /// |---|---|
@@ -155,7 +156,7 @@ impl Study {
     }
 }
 
-/// Share of the samples that a gain saves, with its error.
+/// Returns the share of the samples that a gain saves, with its error.
 pub(super) fn saved(gain: Estimate) -> String {
     let less = Estimate {
         value: 100.0 * (1.0 - 1.0 / gain.value),

@@ -1,4 +1,4 @@
-//! The report of a study: one page, the answer first.
+//! Report of a study: one page, with the answer first.
 
 mod charts;
 mod findings;
@@ -13,13 +13,13 @@ use hairis_instruments::machine;
 use hairis_instruments::report::{Report, Section};
 use serde_json::Value;
 
-/// Whether the content of a `claims.json` has verdicts to show.
+/// Returns true if the content of a `claims.json` has verdicts to show.
 pub(super) fn has_claims(claims: &Value) -> bool {
     tables::claims(claims).is_some()
 }
 
 impl Study {
-    /// The page. `claims`, if given, is what `claims.json` holds: its verdicts are shown with the commit they are of.
+    /// Returns the page. If `claims`, the content of `claims.json`, is given, its verdicts are shown with the commit that they are from.
     #[must_use]
     pub fn report(&self, difference: &Difference, claims: Option<&Value>) -> Report {
         let header = &self.header;
@@ -50,7 +50,7 @@ impl Study {
         }
     }
 
-    /// How far sampling of the hair can go under the environment.
+    /// Returns the limit of sampling the hair alone under the environment, in words.
     #[cfg(test)]
     pub(crate) fn limit_in_words(&self) -> Option<String> {
         findings::limit(self)

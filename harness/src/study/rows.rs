@@ -1,4 +1,4 @@
-//! The rows of a study, as columns.
+//! Rows of a study, and their columns in its files.
 
 use super::estimator::{Estimator, name, on_each_model, place, strategies};
 use super::finished::Study;
@@ -9,12 +9,12 @@ use hairis_instruments::columns::Columns;
 use hairis_instruments::light::Constant;
 use hairis_instruments::stats::Estimate;
 
-/// A row: its identity and its figures.
+/// Row of a study: its identity and its figures.
 #[derive(Clone, Copy)]
 pub(super) struct Row<'a> {
     pub(super) cell: Cell,
     pub(super) of: Estimator,
-    /// Place of the light.
+    /// Index of the light.
     pub(super) light: usize,
     pub(super) measured: &'a Measured,
 }
@@ -26,18 +26,18 @@ impl Row<'_> {
 }
 
 impl Study {
-    /// Names of the lights.
+    /// Returns the names of the lights.
     pub(super) fn lights(&self) -> &[String] {
         &self.header.lights
     }
 
-    /// Place of the constant light: the first, if parts without one were read.
+    /// Returns the index of the constant light, or 0 if the parts have none.
     pub(super) fn constant(&self) -> usize {
         let mut names = self.lights().iter();
         names.position(|name| name == Constant::NAME).unwrap_or(0)
     }
 
-    /// The row of one estimator under one light in a cell.
+    /// Returns the row of one estimator under one light in a cell.
     pub(super) fn row(&self, cell: Cell, of: Estimator, light: usize) -> Row<'_> {
         Row {
             cell,
@@ -47,7 +47,7 @@ impl Study {
         }
     }
 
-    /// The rows of one estimator under one light, one per cell.
+    /// Returns the rows of one estimator under one light, one per cell.
     pub(super) fn rows_of(&self, of: Estimator, light: usize) -> impl Iterator<Item = Row<'_>> {
         self.grid()
             .cells()
@@ -55,7 +55,7 @@ impl Study {
             .map(move |cell| self.row(cell, of, light))
     }
 
-    /// Every row, in order: cells outermost, then models, strategies and lights.
+    /// Returns every row, in order: cells outermost, then models, strategies and lights.
     pub(super) fn rows(&self) -> Vec<Row<'_>> {
         let mut rows = Vec::new();
         for cell in self.grid().cells().take(self.cells.len()) {
@@ -66,7 +66,7 @@ impl Study {
         rows
     }
 
-    /// The columns that identify a row.
+    /// Returns the columns that identify a row.
     pub(super) fn keys(&self, rows: &[Row<'_>]) -> Columns {
         columns_of(rows.iter().map(|row| &row.cell))
             .text("model", rows.iter().map(|row| row.of.0.name()))
@@ -77,10 +77,10 @@ impl Study {
             )
     }
 
-    /// The rows: what depends on the plan and the build alone.
+    /// Returns the rows as columns of a file. They depend only on the plan and the build.
     ///
-    /// The sampler `perfect` would draw with a density proportional to the mean of RGB of `S cos theta_i`: all of its
-    /// weights are the albedo.
+    /// The sampler `perfect` would draw with a density proportional to the mean of RGB of `S cos theta_i`, so that all of its weights are
+    /// the albedo.
     ///
     /// | column | what it is |
     /// |---|---|
@@ -103,7 +103,7 @@ impl Study {
         figures_of(self.keys(&rows), &measured)
     }
 
-    /// Every row of the materials: materials outermost, then inclinations, samplers and lights.
+    /// Returns every row of the materials: materials outermost, then inclinations, samplers and lights.
     pub(super) fn material_rows(&self) -> Vec<MaterialRow<'_>> {
         let inclinations = self.grid().theta_o_deg;
         let keys = self.header.materials.iter().flat_map(|key| {
@@ -117,8 +117,8 @@ impl Study {
         .collect()
     }
 
-    /// The rows of the materials: `material`, `model`, `theta_o_deg` in degrees, `sampler` and `light`, then the figures of
-    /// [`columns`](Self::columns).
+    /// Returns the rows of the materials as columns: `material`, `model`, `theta_o_deg` in degrees, `sampler` and `light`, then the figures
+    /// of [`columns`](Self::columns).
     #[must_use]
     pub fn material_columns(&self) -> Columns {
         materials::columns(&self.material_rows())

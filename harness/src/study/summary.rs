@@ -1,5 +1,5 @@
-//! Summary of a study: gains over the published sampler and of the Cauchy model, as geometric means over the grid, and
-//! in how many cells.
+//! Summary of a study: gains over the published sampler and of the Cauchy model, as medians and geometric means over the grid, with the
+//! shares of cells that gain and lose.
 
 use super::equal_time::count_cells;
 use super::estimator::{Estimator, Strategy, on_each_model, published, samplers, strategies};
@@ -13,7 +13,7 @@ use crate::variance::MAX_RELATIVE_ERROR;
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::{Table, number};
 
-/// The estimator that each of some estimators is compared with, and those.
+/// Function that maps an estimator to the one it is compared with, and the estimators to compare.
 type Compared = (fn(Estimator) -> Estimator, Vec<Estimator>);
 
 /// Maps an estimator to the Gaussian model.
@@ -21,7 +21,7 @@ pub(super) const fn on_gaussian((_, strategy): Estimator) -> Estimator {
     (ModelKind::Gaussian, strategy)
 }
 
-/// Pairs of strategies with the published sampler, on each model.
+/// Pairs strategies with the published sampler, on each model.
 fn over_published(of: impl Iterator<Item = Strategy> + Clone) -> Compared {
     (
         published,
@@ -32,7 +32,7 @@ fn over_published(of: impl Iterator<Item = Strategy> + Clone) -> Compared {
 }
 
 impl Study {
-    /// The tables that sum it up: the samplers of each model against `published`, then the models against each other;
+    /// Returns the tables that summarise the study: the samplers of each model against `published`, then the models against each other;
     /// variances, then variances in equal time.
     #[must_use]
     pub fn summary(&self) -> Vec<Table> {
@@ -86,14 +86,14 @@ impl Study {
         tables
     }
 
-    /// The table of the materials beside the hair of the grid, if there are any.
+    /// Returns the table of the materials beside the hair of the grid, if there are any.
     #[must_use]
     pub fn materials(&self) -> Option<Table> {
         let rows = self.material_rows();
         (!rows.is_empty()).then(|| materials::table(&rows))
     }
 
-    /// Gains in V.
+    /// Returns the table of gains in V.
     fn gains(&self, title: &str, (base, others): &Compared) -> Table {
         let headers = [
             "median",
@@ -121,7 +121,7 @@ impl Study {
                         gain.unsure.to_string(),
                     ]
                 }
-                // Perfect sampling under constant light.
+                // Perfect sampling under constant light has a V of 0.
                 None if self.rows_of(other, light).all(|row| row.v().value == 0.0) => {
                     vec!["no limit".to_owned()]
                 }
@@ -130,7 +130,7 @@ impl Study {
         )
     }
 
-    /// Gains in equal time, a column for each number of samples per point.
+    /// Returns the table of gains in equal time, with a column for each number of samples per point.
     fn gains_in_time(&self, title: &str, (base, others): &Compared, counted: Counted) -> Table {
         let headers = PER_POINT.map(|n| format!("{n} a point"));
         self.table(title, headers, others.iter().copied(), &|other, light| {

@@ -1,12 +1,11 @@
-//! Times of a sample, set-up included, and of a look-up of the light in its direction. They turn variances into
-//! efficiencies.
+//! Times of a sample, set-up included, and of a look-up of the light in its direction, which turn variances into efficiencies.
 //!
-//! Measured on one thread, with nothing else at work, on the default hair and eight shading points at a time, one per
-//! lane. Contenders alternate within a round, as in [`speed`](crate::speed).
+//! Times are measured on one thread, with nothing else at work, on the default hair and eight shading points at a time, one per lane.
+//! Contenders alternate within a round, as in [`speed`](crate::speed).
 //!
-//! A look-up is [`Light::see8`] in directions of the published sampler, the light's density of them included, as multiple
-//! importance sampling needs it. They are so many, and spread so far, that an environment is read as by a render: from
-//! whatever cache holds all of it.
+//! A look-up is [`Light::see8`] in directions of the published sampler. It includes the light's density of the direction, which multiple
+//! importance sampling needs. The directions are so many, and spread so far, that an environment is read as by a render, from the cache
+//! level that holds all of it.
 
 use crate::lights::Lights;
 use crate::rays::{RaySubject, RayTimes, measure_times, numbers};
@@ -23,24 +22,24 @@ use hairis_instruments::sequence::{Independent, stream_id};
 use hairis_instruments::stats::Estimate;
 use wide::f32x8;
 
-/// Samples of a shading point over which its set-up is spread: a path tracer's, and two of direct lighting.
+/// Numbers of samples per shading point that share its set-up: a path tracer's, and two of direct lighting.
 pub(super) const PER_POINT: [usize; 3] = [1, 4, 16];
 
-/// Passes of a stretch of samples, by place in [`PER_POINT`]: sixteen samples of each point.
+/// Passes of a stretch of samples, in the order of [`PER_POINT`]: sixteen samples of each point.
 const PASSES: [u32; PER_POINT.len()] = [16, 4, 1];
 
-/// Packets of eight shading points a pass.
+/// Number of packets of eight shading points per pass.
 const PACKETS: usize = 64;
 
-/// Packets of eight shading points whose sixteen samples each are the directions of the look-ups, 2^16 in all.
+/// Number of packets of eight shading points whose sixteen samples each are the directions of the look-ups, 2^16 in all.
 const LOOK_UP_PACKETS: usize = 512;
 
 /// Timed operation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Timed {
-    /// A sample of a model by a sampler, with so many per shading point.
+    /// Sample of a model by a sampler, with so many per shading point.
     Sample(ModelKind, Sampler, usize),
-    /// A look-up of the light of this name.
+    /// Look-up of the light of this name.
     LookUp(String),
 }
 
@@ -52,8 +51,8 @@ pub struct Times {
 }
 
 impl Times {
-    /// Measures them, with nothing else at work: in about three seconds, or less than one if `quick`. Without an
-    /// environment its look-up is not known.
+    /// Measures the times of samples and look-ups, with nothing else at work, in about three seconds, or less than one if `quick`. Without
+    /// an environment, the time of its look-up stays unknown.
     #[must_use]
     pub fn measure(seed: u64, quick: bool, environment: Option<&Environment>) -> Self {
         let rounds = if quick { 15 } else { 75 };
@@ -64,7 +63,7 @@ impl Times {
         }
     }
 
-    /// Measures those of rays as well: in about five seconds, or one if `quick`.
+    /// Measures the times of rays as well, in about five seconds, or one if `quick`.
     #[must_use]
     pub fn with_rays(self, seed: u64, quick: bool, environment: Option<&Environment>) -> Self {
         let is_measured = |of: &RaySubject| {
@@ -84,7 +83,7 @@ impl Times {
         Self { of_rays, ..self }
     }
 
-    /// Median in ns; not a number if it was not measured.
+    /// Returns the median in ns, or NaN if the operation was not measured.
     fn median(&self, of: &Timed) -> Estimate {
         self.of_samples
             .iter()
@@ -92,17 +91,17 @@ impl Times {
             .map_or(Estimate::UNKNOWN, |(_, time)| time.median())
     }
 
-    /// Median time of a sample in ns, for 1, 4 or 16 samples per shading point; not a number for others.
+    /// Returns the median time of a sample in ns, for 1, 4 or 16 samples per shading point, or NaN for other numbers.
     pub(crate) fn ns(&self, model: ModelKind, sampler: Sampler, per_point: usize) -> Estimate {
         self.median(&Timed::Sample(model, sampler, per_point))
     }
 
-    /// Median time of a look-up of the light of this name in ns; not a number if it was not measured.
+    /// Returns the median time of a look-up of the light of this name in ns, or NaN if it was not measured.
     pub(super) fn look_up(&self, light: &str) -> Estimate {
         self.median(&Timed::LookUp(light.to_owned()))
     }
 
-    /// The table of times of samples and look-ups; what does not apply to a row is empty.
+    /// Returns the times of samples and look-ups as columns. Fields that do not apply to a row are empty.
     pub(super) fn columns(&self) -> Columns {
         let words = |(of, _): &(Timed, TimeSpread)| match of {
             Timed::Sample(model, sampler, per_point) => [
@@ -138,7 +137,7 @@ impl Times {
 fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeSpread)> {
     let mut from = Independent::new(seed, stream_id(&[0x71e5]));
     let points: Vec<Points> = (0..PACKETS).map(|_| Points::draw(&mut from)).collect();
-    // What is timed, a pass of it, and the passes of a stretch; short ones are repeated.
+    // Each entry has the operation, a pass of it, and the passes of a stretch, because short passes are repeated.
     let mut contenders: Vec<(Timed, Box<dyn Pass + '_>, u32)> = Vec::new();
     for model in ModelKind::ALL {
         for sampler in Sampler::ALL {
@@ -172,7 +171,7 @@ fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeS
             Timed::Sample(_, _, per_point) => PACKETS * *per_point,
             Timed::LookUp(_) => seen.len(),
         };
-        // One stretch untimed, for the caches.
+        // The first stretch is not timed; it fills the caches.
         stretch(&mut **pass, 1);
         stretch(&mut **pass, *passes) / (f64::from(*passes) * (8 * directions) as f64)
     });
@@ -183,7 +182,7 @@ fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeS
         .collect()
 }
 
-/// Directions of the published sampler on the default hair, sixteen per shading point.
+/// Draws directions of the published sampler on the default hair, sixteen per shading point.
 fn directions(from: &mut Independent) -> Vec<Vec3x8> {
     let material = material(
         ModelKind::Gaussian,
@@ -198,7 +197,7 @@ fn directions(from: &mut Independent) -> Vec<Vec3x8> {
     (0..LOOK_UP_PACKETS).flat_map(of_packet).collect()
 }
 
-/// Eight shading points and the numbers of their samples.
+/// Eight shading points, with the numbers of their samples.
 #[derive(Clone)]
 struct Points {
     wo: Vec3x8,
@@ -214,7 +213,7 @@ impl Points {
     }
 }
 
-/// A pass over `points`, `per_point` samples each.
+/// Returns a pass over `points`, with `per_point` samples each.
 fn pass<'a>(
     model: ModelKind,
     sampler: Sampler,
@@ -295,7 +294,7 @@ mod tests {
     fn look_ups_are_in_many_directions_all_over_the_sphere() {
         let seen = directions(&mut Independent::new(1, 0));
         assert_eq!(seen.len() * 8, 1 << 16);
-        // Patches of one size: steps along the axis, and of 10 degrees around it.
+        // Patches of equal size: steps along the axis, and of 10 degrees around it.
         let mut cells = std::collections::BTreeSet::new();
         for wi in seen.iter().flat_map(|wi| (0..8).map(|lane| wi.lane(lane))) {
             assert!((wi.length() - 1.0).abs() < 1e-5, "{wi}");

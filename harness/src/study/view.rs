@@ -15,28 +15,28 @@ use hairis_instruments::table::Table;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Gain {
     pub(crate) geometric_mean: Estimate,
-    /// The middle cell, with its own standard error: that of the median is smaller.
+    /// Median cell, with its own standard error, which is larger than that of the median.
     pub(crate) median: Estimate,
-    /// First and third quartile.
+    /// First and third quartile of the ratios.
     pub(crate) quartiles: [f64; 2],
     /// Shares of the cells that are above 1 and below it by more than two standard errors.
     pub(crate) shares: [f64; 2],
     pub(crate) least: Estimate,
     pub(crate) most: Estimate,
-    /// Cells left out.
+    /// Number of cells that are left out.
     pub(crate) unsure: usize,
 }
 
-/// The first V over the second; `None` if one of them is unsure.
+/// Returns the first V over the second; `None` if one of them is too uncertain.
 pub(super) fn sure_ratio([base, other]: [Estimate; 2]) -> Option<Estimate> {
     let sure = |v: &Estimate| v.value > 0.0 && v.standard_error <= MAX_RELATIVE_ERROR * v.value;
     (sure(&base) && sure(&other)).then(|| base.ratio(&other))
 }
 
-/// The first of two lists of V over the second, cell by cell.
+/// Summarises the ratios of the first V to the second, cell by cell; `None` if no cell is sure.
 ///
-/// The standard error of the geometric mean is that of its figures, for this grid. Both samplers use the same directions of
-/// the light: errors of the ratios are, if anything, overestimated.
+/// The standard error of the geometric mean is that of its figures, for this grid. Both samplers use the same directions of the light, so
+/// errors of the ratios are, if anything, overestimated.
 pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
     let (mut ratios, mut unsure) = (Vec::new(), 0);
     for pair in pairs {
@@ -70,21 +70,20 @@ pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
 /// Parts of a sample whose time is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Counted {
-    /// The sampler's alone.
+    /// Time of the sampler alone.
     Sample,
-    /// That and the look-up of the light.
+    /// Time of the sampler and of the look-up of the light.
     LookUp,
 }
 
-/// Samples per shading point of figures and sentences that give one number of them: direct lighting.
+/// Samples per shading point in figures and sentences that state one number only: that of direct lighting.
 pub(super) const MANY: usize = 16;
 
-/// The samplers that are told apart in sentences: the published one, and the matched one that a renderer takes unless it
-/// knows better.
+/// Samplers that sentences distinguish: the published one, and the matched one that is the default of a renderer.
 pub(super) const TOLD: [Sampler; 2] = [Sampler::Published, Sampler::Matched];
 
 impl Study {
-    /// V of `base` and of `other` in every cell.
+    /// Returns V of `base` and of `other` in every cell.
     pub(super) fn pairs(
         &self,
         [base, other]: [Estimator; 2],
@@ -95,24 +94,24 @@ impl Study {
             .map(|(base, other)| [base.v(), other.v()])
     }
 
-    /// V of `base` over V of `other`; `None` if no cell is sure.
+    /// Returns V of `base` over V of `other`; `None` if no cell is sure.
     pub(super) fn gain(&self, pair: [Estimator; 2], light: usize) -> Option<Gain> {
         gain(self.pairs(pair, light))
     }
 
-    /// Time of a sample in ns, its shading point's set-up shared by `per_point`; not a number for perfect sampling.
+    /// Returns the time of a sample in ns, with its shading point's set-up shared by `per_point`; NaN for perfect sampling.
     pub(super) fn ns(&self, (model, strategy): Estimator, per_point: usize) -> Estimate {
         strategy.map_or(Estimate::UNKNOWN, |sampler| {
             self.times.ns(model, sampler, per_point)
         })
     }
 
-    /// Time of a look-up of the light in ns; not a number if it was not measured.
+    /// Returns the time of a look-up of the light in ns, or NaN if it was not measured.
     pub(super) fn look_up(&self, light: usize) -> Estimate {
         self.times.look_up(&self.lights()[light])
     }
 
-    /// Time counted beside that of a sample, in ns.
+    /// Returns the time that is counted beside that of a sample, in ns.
     pub(super) fn more(&self, light: usize, counted: Counted) -> Estimate {
         if counted == Counted::LookUp {
             self.look_up(light)
@@ -121,7 +120,7 @@ impl Study {
         }
     }
 
-    /// Time of a ray without its tracing, in ns, by its place in [`RAYS`]; not a number if it was not measured.
+    /// Returns the time of a ray without its tracing, in ns, by its index in [`RAYS`]; NaN if it was not measured.
     pub(super) fn ray_ns(&self, (model, strategy): Estimator, light: usize, by: usize) -> Estimate {
         let key = (model.name(), name(strategy), &*self.lights()[light]);
         let is = |of: &&RayTimes| (of.model, of.sampler, &*of.light) == key;
@@ -132,7 +131,7 @@ impl Study {
             .map_or(Estimate::UNKNOWN, |of| of.ray(RAYS[by].candidates_each))
     }
 
-    /// Time of a sample of `base` over that of one of `other`.
+    /// Returns the time of a sample of `base` over that of one of `other`.
     pub(super) fn time_ratio(
         &self,
         pair: [Estimator; 2],
@@ -146,8 +145,8 @@ impl Study {
         )
     }
 
-    /// Ratio of the variance of `base` to that of `other` in equal time, [`MANY`] samples per shading point: median over
-    /// the cells. `None` if no cell is sure, or a time unknown.
+    /// Returns the ratio of the variance of `base` to that of `other` in equal time, with [`MANY`] samples per shading point, as the median
+    /// over the cells. `None` if no cell is sure, or a time is unknown.
     pub(super) fn equal_time(
         &self,
         pair: [Estimator; 2],
@@ -159,7 +158,7 @@ impl Study {
         gain.value.is_finite().then_some(gain)
     }
 
-    /// Geometric mean over the cells of `1 / (V µs)`.
+    /// Returns the geometric mean over the cells of `1 / (V µs)`.
     pub(super) fn efficiency(
         &self,
         of: Estimator,
@@ -170,7 +169,7 @@ impl Study {
         Some(one.ratio(&self.ns(of, per_point)))
     }
 
-    /// A table with a row for each of these estimators under each light, of numbers that `cells` gives.
+    /// Returns a table with a row for each of these estimators under each light, whose numbers `cells` returns.
     pub(super) fn table(
         &self,
         title: &str,
@@ -190,7 +189,7 @@ impl Study {
         table
     }
 
-    /// A chart with a bar for each light of each of these estimators, from `level` on.
+    /// Draws a chart with a bar for each light of each of these estimators, from `level` on.
     pub(super) fn by_light(
         &self,
         title: &str,
@@ -199,7 +198,7 @@ impl Study {
         of: &mut dyn Iterator<Item = Estimator>,
         bar: &dyn Fn(Estimator, usize) -> Bar,
     ) -> String {
-        // A file's name in words.
+        // The words of a file's name.
         let labels: Vec<String> = self
             .lights()
             .iter()
@@ -218,12 +217,12 @@ impl Study {
     }
 }
 
-/// Geometric mean of V over some cells.
+/// Returns the geometric mean of V over some cells.
 pub(super) fn mean_v<'a>(rows: impl Iterator<Item = Row<'a>>) -> Option<Estimate> {
     gain(rows.map(|row| [row.v(), Estimate::exact(1.0)])).map(|gain| gain.geometric_mean)
 }
 
-/// Mean over some cells of a figure; cells where it is no number are left out.
+/// Returns the mean of a figure over some cells. Cells with NaN are left out.
 pub(super) fn mean_of<'a>(
     rows: impl Iterator<Item = Row<'a>>,
     figure: &dyn Fn(&Measured) -> Estimate,

@@ -1,28 +1,28 @@
-//! Checks of every row.
+//! Checks that every row of figures must pass, whatever its model.
 
 use super::Measured;
 use crate::efficiency::{FALSE_ALARM, z_bound};
 use hairis_instruments::stats::sidak;
 
-/// Rounding of a weight in single precision, relative to its bound.
+/// Relative amount by which single precision may round a weight above its bound.
 const ROUNDING: f64 = 1e-4;
 
-/// A row to check.
+/// Row of figures to check.
 pub(crate) struct Checked<'a> {
-    /// The row in words.
+    /// Place of the row, in words.
     pub(crate) place: String,
-    /// Rows of one group follow each other, and have one mean under the constant light.
+    /// Name of the row's group. Rows of one group follow each other, and have one mean under the constant light.
     pub(crate) group: String,
     /// Whether the row is of a sampler under the constant light.
     pub(crate) is_constant: bool,
     pub(crate) measured: &'a Measured,
 }
 
-/// A line for each figure that cannot be right.
+/// Returns a line for each figure that cannot be right.
 ///
 /// - No weight is above its proven bound.
-/// - Under the constant light, which every direction sees, the samplers of a group agree on the mean with the first of them: all
-///   of their scores together stay below the bound that they pass by chance in one of [`FALSE_ALARM`]'s inverse runs.
+/// - Under the constant light, which every direction sees, the samplers of a group agree on the mean with the first of them. All of their
+///   scores together stay below a bound that chance alone exceeds with probability [`FALSE_ALARM`].
 /// - The same holds for the means of rays from the largest pools against those of samples, under every light.
 pub(crate) fn failures(rows: &[Checked<'_>]) -> Vec<String> {
     let mut failures = Vec::new();

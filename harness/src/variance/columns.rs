@@ -1,18 +1,18 @@
-//! Figures as columns of a table.
+//! Columns of figures, as tables of studies and materials share them.
 
 use super::{Measured, POOL_SIZES};
 use crate::rays::{HALF, VISIBLE, occluded};
 use hairis_instruments::columns::Columns;
 use hairis_instruments::stats::Estimate;
 
-/// Estimator of a ray: the name in tables, the name in columns, and the candidates of each technique, if it chooses.
+/// Estimator of a ray: its name in tables, its name in columns, and the candidates of each technique, if it chooses from candidates.
 pub(crate) struct By {
     pub(crate) name: &'static str,
     pub(crate) column: &'static str,
     pub(crate) candidates_each: Option<u32>,
 }
 
-/// The estimators of a ray: one-sample MIS, and choices from pools of [`POOL_SIZES`].
+/// Estimators of a ray: one-sample MIS, and choices from pools of [`POOL_SIZES`].
 pub(crate) const RAYS: [By; 1 + POOL_SIZES.len()] = [
     By {
         name: "MIS",
@@ -31,16 +31,16 @@ pub(crate) const RAYS: [By; 1 + POOL_SIZES.len()] = [
     },
 ];
 
-/// Places in [`RAYS`] of one-sample MIS and of the pools.
+/// Indices in [`RAYS`] of one-sample MIS and of the pools.
 pub(crate) const MIS: usize = 0;
 pub(crate) const POOLS: [usize; POOL_SIZES.len()] = [1, 2];
 
-/// V of one ray without occlusion, by place in [`RAYS`]; not a number where there is none.
+/// Returns V of one ray without occlusion, by index in [`RAYS`], or NaN if it was not measured.
 pub(crate) fn ray_v(measured: &Measured, by: usize) -> Estimate {
     measured.rays.map_or(Estimate::UNKNOWN, |rays| rays[by])
 }
 
-/// V with half of the directions visible.
+/// Returns V with half of the directions visible.
 pub(crate) fn half_visible(measured: &Measured, by: usize) -> Estimate {
     occluded(ray_v(measured, by), HALF)
 }
@@ -61,7 +61,7 @@ fn rays(mut columns: Columns, rows: &[&Measured]) -> Columns {
     )
 }
 
-/// The columns of figures, after those that identify a row.
+/// Adds the columns of figures, after those that identify a row.
 pub(crate) fn figures_of(columns: Columns, rows: &[&Measured]) -> Columns {
     let figures = |of: fn(&Measured) -> f64| rows.iter().map(move |row| of(row));
     let columns = columns

@@ -1,34 +1,34 @@
 //! Estimates of one sampler under one light: mean, relative variance and divergence from weighted contributions.
 //!
-//! The contribution of a direction is `y = L S cos theta_i / p`, with `p` the sampler's density. Its moments
-//! `E_p[y]`, `E_p[y^2]` and `E_p[y ln y]` are integrals over the sphere, and directions of any density estimate them. Those
-//! of the sampler alone would need millions to hit a small sun often enough, so directions drawn from the light
-//! (density `q`) join them by the balance heuristic: with `n` of the one and `c n` of the other, a direction counts
-//! `p / (p + c q)` among the sampler's and `c p / (p + c q)` among the light's.
+//! The contribution of a direction is `y = L S cos theta_i / p`, with `p` the sampler's density. Its moments `E_p[y]`, `E_p[y^2]` and
+//! `E_p[y ln y]` are integrals over the sphere, and directions of any density estimate them. Directions of the sampler alone would have to
+//! be millions to hit a small sun often enough. Therefore directions drawn from the light (density `q`) join them by the balance heuristic:
+//! with `n` of the one and `c n` of the other, a direction counts `p / (p + c q)` among the sampler's and `c p / (p + c q)` among the
+//! light's.
 
 use core::array::from_fn;
 use hairis_instruments::stats::Estimate;
 use serde::Serialize;
 use wide::f64x8;
 
-/// Sums over the directions of one stratum, the sampler's or the light's, one per lane: of `N` terms, and of the product of
-/// each two of them.
+/// Sums over the directions of one stratum, the sampler's or the light's, one per lane: of `N` terms, and of the product of each two of
+/// them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sums<const N: usize> {
     sums: [f64x8; N],
-    /// The first term no earlier than the second.
+    /// Sums of products, by the index of the first term, which is no earlier than the second.
     products: [[f64x8; N]; N],
     count: u64,
     largest: f64x8,
 }
 
-/// Sums of `m y`, `m y^2` and `m y ln y`.
+/// Sums of `m y`, `m y^2` and `m y ln y`, for one stratum.
 pub(super) type Tally = Sums<3>;
 
 /// Figures of a sampler under a light.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Figures {
-    /// `E_p[y]`: the integral of `L S cos theta_i`.
+    /// Mean `E_p[y]`, which is the integral of `L S cos theta_i`.
     pub(crate) mean: Estimate,
     /// Relative variance of one sample, `E_p[y^2] / E_p[y]^2 - 1`.
     pub(crate) v: Estimate,
@@ -50,7 +50,7 @@ impl<const N: usize> Default for Sums<N> {
 }
 
 impl<const N: usize> Sums<N> {
-    /// Counts eight directions, the largest of them by `x`.
+    /// Counts eight directions, and updates the largest number with `x`.
     #[inline]
     pub(super) fn see(&mut self, x: f64x8) {
         self.count += 8;
@@ -68,7 +68,7 @@ impl<const N: usize> Sums<N> {
         }
     }
 
-    /// Means of the terms, and the covariances of those means.
+    /// Returns the means of the terms, and the covariances of those means.
     fn means(&self) -> ([f64; N], [[f64; N]; N]) {
         if self.count < 2 {
             return ([0.0; N], [[0.0; N]; N]);
@@ -83,7 +83,7 @@ impl<const N: usize> Sums<N> {
     }
 }
 
-/// Means and covariances of all strata together.
+/// Returns the means and covariances of all strata together.
 pub(super) fn joined<const N: usize>(strata: &[Sums<N>]) -> ([f64; N], [[f64; N]; N]) {
     let (mut means, mut covariances) = ([0.0; N], [[0.0; N]; N]);
     for (m, s) in strata.iter().map(Sums::means) {
@@ -98,7 +98,7 @@ pub(super) fn joined<const N: usize>(strata: &[Sums<N>]) -> ([f64; N], [[f64; N]
     (means, covariances)
 }
 
-/// The largest number that was counted.
+/// Returns the largest number that was counted.
 pub(super) fn largest<const N: usize>(strata: &[Sums<N>]) -> f64 {
     strata
         .iter()
@@ -111,17 +111,17 @@ impl Tally {
     #[inline]
     pub(super) fn push(&mut self, y: f64x8, m: f64x8) {
         self.see(y);
-        // Most directions miss a small light: they count, and add nothing.
+        // Most directions miss a small light. They count, and add nothing.
         if !y.simd_gt(f64x8::ZERO).any() {
             return;
         }
         let a = m * y;
-        // The clamp keeps 0 ln 0 from being anything but 0.
+        // The clamp ensures that 0 ln 0 is 0.
         self.add([a, a * y, a * y.max(f64x8::splat(f64::MIN_POSITIVE)).ln()]);
     }
 }
 
-/// The estimates of the directions of all strata together; not a number where no direction contributed.
+/// Returns the estimates of the directions of all strata together, or NaN if no direction contributed.
 ///
 /// Standard errors are those of the delta method.
 pub(super) fn figures(strata: &[Tally]) -> Figures {
@@ -182,7 +182,8 @@ pub(super) mod tests {
         assert!(got.kl.z_score(0.422_784_335_098_467).abs() < 4.0, "{got:?}");
     }
 
-    /// A light of radiance 1 on [0, 0.1) of [0, 1), under the density `p = 1/2 + x`; `ratio` directions of the light to one of the sampler.
+    /// Returns the estimates of a light of radiance 1 on [0, 0.1) of [0, 1), under the density `p = 1/2 + x`, with `ratio` directions of
+    /// the light to one of the sampler.
     fn small_light(run: u64, ratio: u64) -> Figures {
         let mut from = Independent::new(3, run);
         let mut uniform = || f64x8::new(from_fn(|_| from.next_f64()));
@@ -205,7 +206,7 @@ pub(super) mod tests {
         figures(&strata)
     }
 
-    /// A thousand runs' mean, V and divergence are off the truth by what their errors say, no more and no less.
+    /// Checks that mean, V and divergence of a thousand runs are off the truth by as much as their standard errors state.
     pub(in crate::variance) fn assert_honest(
         ratio: u64,
         truth: [f64; 3],

@@ -1,19 +1,19 @@
-//! The paths give the same answers.
+//! Agreement of the code paths, which must give the same answers to the same requests.
 
 use super::{PATHS, eval, numbers, with_xi};
 use crate::cases::{Case, Cases, angles};
 use hairis_variants::ModelId;
 use serde_json::{Value, json};
 
-/// Words for the samplers of both bells in this build.
+/// Returns the words for the samplers of both bells in this build.
 fn samplers() -> impl Iterator<Item = &'static str> + Clone {
     let of_name = ModelId::ALL.iter().filter(|id| id.name() == "gaussian");
     of_name.filter_map(|id| Some(id.choice()?.1))
 }
 
-/// Relative error that the bounds of the kernels allow. All paths are asked about the same rounded input.
+/// Returns the relative error that the bounds of the kernels allow. All paths get the same rounded input.
 ///
-/// A matched density is made of the model's own bells: what S is allowed, it is.
+/// A matched density is made of the model's own bells, so it is allowed as much as S.
 fn allowed(sampler: &str, model: &str, quantity: &str) -> f64 {
     match (sampler, model, quantity) {
         (_, "gaussian", "s") => 1e-4,
@@ -22,7 +22,8 @@ fn allowed(sampler: &str, model: &str, quantity: &str) -> f64 {
     }
 }
 
-/// A Gaussian below about 2^-115 is 0 by design; below this, S is nothing but such bells, and so is a matched density.
+/// Returns the value below which only an absolute error counts. A Gaussian below about 2^-115 is 0 by design. Below this value, S consists
+/// of such bells only, and so does a matched density.
 fn floor(sampler: &str, model: &str, quantity: &str) -> f64 {
     match (sampler, model, quantity) {
         (_, "gaussian", "s") => 1e-27,
@@ -31,14 +32,14 @@ fn floor(sampler: &str, model: &str, quantity: &str) -> f64 {
     }
 }
 
-/// The request of a case for a sampler.
+/// Returns the request of a case for a sampler.
 fn request(sampler: &str, model: &str, case: &Case) -> Value {
     let mut request = super::request(model, case);
     request["sampler"] = json!(sampler);
     request
 }
 
-/// Models and cases in turn, so that neighbours differ in everything.
+/// Returns models and cases in turn, so that neighbours differ in everything.
 fn cases(seed: u64, len: usize) -> Vec<(&'static str, Case)> {
     let mut source = Cases::new(seed);
     (0..len)
@@ -98,8 +99,8 @@ fn agree_on_directions(sampler: &str) {
     }
 }
 
-/// A sample is right if it is that of numbers at most this far from those given: far from a narrow lobe the last bit of
-/// one moves a direction by 1e-4 rad, whatever the code.
+/// Largest change of the numbers that explains a different sample. Far from a narrow lobe, the last bit of a number moves a direction by
+/// 1e-4 rad, whatever the code.
 const XI_ERROR: f64 = 4.0 / 16_777_216.0;
 
 #[test]
@@ -151,7 +152,7 @@ fn agree_on_samples(sampler: &str) {
             let slack = 1e-6 + apart(&below[i], expected) + apart(&above[i], expected);
             assert!(apart(answer, expected) <= slack, "{name}, to {slack}");
             let mut at_wi = request(sampler, model, case);
-            // The direction itself: its shortest digits are another number in double precision.
+            // The exact direction in single precision. Its shortest digits would be another number in double precision.
             at_wi["wi"] = json!(<[f64; 3]>::from(direction(&answer["wi"]).as_dvec3()));
             kept.push(i);
             returned.push(at_wi);
@@ -161,7 +162,7 @@ fn agree_on_samples(sampler: &str) {
             "{path}: {} samples were not discarded",
             kept.len()
         );
-        // S and the pdf that came with a sample are those of its direction, up to the rounding of that direction.
+        // S and the pdf of a sample must be those of its direction, up to the rounding of that direction.
         for (i, expected) in kept.into_iter().zip(eval("f64", &returned).json()) {
             let ((model, case), wi) = (&cases[i], direction(&answers[i]["wi"]));
             let case = Case { wi, ..*case };
@@ -188,13 +189,13 @@ fn agree_on_samples(sampler: &str) {
     }
 }
 
-/// A direction of an answer in single precision.
+/// Returns a direction of an answer in single precision.
 fn direction(wi: &Value) -> glam::Vec3 {
     let wi = numbers(wi);
     glam::DVec3::new(wi[0], wi[1], wi[2]).as_vec3()
 }
 
-/// Distance between two sampled directions.
+/// Returns the distance between two sampled directions.
 fn apart(a: &Value, b: &Value) -> f64 {
     let (a, b) = (numbers(&a["wi"]), numbers(&b["wi"]));
     a.iter()
@@ -204,8 +205,8 @@ fn apart(a: &Value, b: &Value) -> f64 {
         .sqrt()
 }
 
-/// Whether a sample may be discarded or not by the last bit of a number: one within 1e-4 rad of the axis, or one where
-/// no lobe reaches (`xi_phi` of 0 puts a cosine lobe at |phi| = pi, where the cosine of a rounded pi/2 is just above 0).
+/// Returns true if the last bit of a number may decide whether the sample is discarded: the sample is within 1e-4 rad of the axis, or no
+/// lobe reaches it (`xi_phi` of 0 puts a cosine lobe at |phi| = pi, where the cosine of a rounded pi/2 is just above 0).
 fn is_edge(sample: &Value) -> bool {
     let wi = numbers(&sample["wi"]);
     wi[1].hypot(wi[2]) < 1e-4 || sample["pdf"].as_f64().unwrap() < 1e-15
@@ -296,7 +297,7 @@ fn the_narrowest_hair_gives_finite_answers_everywhere() {
         let run = eval(path, &requests);
         assert_eq!(run.code, Some(0), "{path}: {:?}", run.err);
         for line in &run.out {
-            // A number that is not finite is printed as null, which is legal for the lobe alone.
+            // A number that is not finite is printed as null, which only the lobe may be.
             let nulls = line.matches("null").count() - line.matches("\"lobe\":null").count();
             assert_eq!(nulls, 0, "{path}: {line}");
         }

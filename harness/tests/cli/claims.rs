@@ -1,4 +1,4 @@
-//! `hairis claims`: its file, its seed and its threads.
+//! Tests of `hairis claims`: its file, its seed and its threads.
 
 #[cfg(unix)]
 use super::end;
@@ -26,7 +26,7 @@ fn claims(dir: &Path, threads: &str, seed: &str) -> Run {
     quick(dir, threads, seed).output().unwrap().into()
 }
 
-/// `claims.json` of a run, without the claim that depends on times.
+/// Returns `claims.json` of a run, without the claim that depends on times.
 fn untimed(threads: &str, seed: &str) -> Value {
     untimed_in(&TempDir::new().unwrap(), threads, seed)
 }
@@ -48,14 +48,13 @@ fn untimed_in(dir: &TempDir, threads: &str, seed: &str) -> Value {
     json
 }
 
-/// The run of seed 1 on one thread.
+/// Returns the run of seed 1 on one thread.
 fn reference() -> &'static Value {
     static CLAIMS: OnceLock<Value> = OnceLock::new();
     CLAIMS.get_or_init(|| untimed("1", "1"))
 }
 
-/// A run that a signal has ended goes on from the figures that it had, of quadrature and of
-/// samples.
+/// A run that a signal has ended continues from the figures that it had, of quadrature and of samples.
 #[cfg(unix)]
 #[test]
 fn a_killed_run_goes_on() {
@@ -135,7 +134,7 @@ fn a_full_disk_leaves_the_file_as_it_was() {
     let dir = TempDir::new().unwrap();
     let path = dir.path().join("claims.json");
     fs::write(&path, "before").unwrap();
-    // No file may grow beyond a kilobyte or two; the signal for that is ignored, as for any program that checks its writes.
+    // No file may grow beyond a kilobyte or two. The signal for that is ignored, as in any program that checks its writes.
     let script = "trap '' XFSZ; ulimit -f 2; exec \"$0\" claims --quick --out \"$1\"";
     let output = Command::new("sh")
         .args([

@@ -14,13 +14,13 @@ use hairis_variants::chiang::Shifts;
 use hairis_variants::kajiya_kay::Form;
 use serde_json::{Value, json};
 
-// None of them is a number of single precision.
+// None of these is a number of single precision.
 const WO: [f64; 3] = [0.6, 0.8, 0.0];
 const WI: [f64; 3] = [0.28, -0.936, 0.2137];
 const XI: [f64; 3] = [0.3, 0.7, 0.9];
 const H: f64 = 0.35;
 
-/// The value, density and sample of a line are those of `point`, to `1e-12`.
+/// Checks that the value, density and sample of a line are those of `point`, to `1e-12`.
 fn assert_exact(line: &Value, point: &impl Reference<f64>) {
     let wi: [f64; 3] = DVec3::from(WI).normalize().into();
     let mut at_wi = line.clone();
@@ -108,11 +108,11 @@ fn kajiya_kay() {
 #[test]
 fn chiang_by_absorption_melanin_and_color() {
     let (beta_n, melanin, color) = (0.31_f64, [0.9, 0.2], [0.6, 0.4, 0.2]);
-    // The two formulas as d'Eon et al. 2011 and Chiang et al. 2016 print them.
+    // Both formulas as d'Eon et al. 2011 and Chiang et al. 2016 print them.
     let of_melanin: [f64; 3] = core::array::from_fn(|c| {
         melanin[0] * [0.419, 0.697, 1.37][c] + melanin[1] * [0.187, 0.4, 1.05][c]
     });
-    // As MaterialX prints it: a quantity of melanin, of which the redness is pheomelanin.
+    // The formula as MaterialX prints it: a quantity of melanin, of which the redness is pheomelanin.
     let quantity = -(1.0_f64 - 0.7).ln();
     let of_amount: [f64; 3] = core::array::from_fn(|c| {
         quantity * (0.6 * [0.419, 0.697, 1.37][c] + 0.4 * [0.187, 0.4, 1.05][c])
@@ -142,7 +142,7 @@ fn chiang_by_absorption_melanin_and_color() {
             ("mean", Selection::Mean),
             ("by-channel", Selection::ByChannel),
         ] {
-            // Not every build has both.
+            // Some builds lack one of the two.
             if ModelId::find("chiang", Some(word)).is_some() {
                 let line =
                     json!({"model": "chiang", "select": word, "params": params, "wo": WO, "h": H});

@@ -1,25 +1,25 @@
-//! Refusals of bad input, and their messages.
+//! Rejection of bad input, line by line, and the messages that name the field at fault.
 
 use super::{PATHS, eval, good, names, run};
 use core::f64::consts::{FRAC_PI_2, PI};
 use serde_json::{Value, json};
 use std::fs;
 
-/// A good request with the field at a JSON pointer replaced.
+/// Returns a good request with the field at a JSON pointer replaced.
 fn with(pointer: &str, value: Value) -> Value {
     let mut request = good();
     *request.pointer_mut(pointer).unwrap() = value;
     request
 }
 
-/// A good request with a field added to the object at a JSON pointer.
+/// Returns a good request with a field added to the object at a JSON pointer.
 fn and(pointer: &str, name: &str, value: Value) -> Value {
     let mut request = good();
     request.pointer_mut(pointer).unwrap()[name] = value;
     request
 }
 
-/// A good request without a field of the object at a JSON pointer.
+/// Returns a good request without a field of the object at a JSON pointer.
 fn without(pointer: &str, name: &str) -> Value {
     let mut request = good();
     request

@@ -1,4 +1,4 @@
-//! `hairis shader`: source on standard output, and refusals in one line.
+//! Tests of `hairis shader`: source on standard output, and bad flags that are rejected in one line.
 
 use super::{Run, command, good, names, run};
 use serde_json::Value;
@@ -251,7 +251,7 @@ fn a_folder_has_what_the_flags_name() {
     assert_eq!(names(dir.path()), files);
     let example = fs::read_to_string(dir.path().join("example.c")).unwrap();
     assert!(example.contains("HairisKajiyaKayParams params = hairis_kajiya_kay_params_brown();"));
-    // An example needs functions that are not there.
+    // An example needs functions that are missing here.
     let some = dir.path().join("some");
     print(&[&flags[..5], &[some.to_str().unwrap(), "--call", "eval"]].concat());
     assert_eq!(names(&some), ["README.md", "hairis_kajiya_kay.h"]);
@@ -288,7 +288,7 @@ fn folders_of_others_are_refused() {
     // A folder of another version is the command's own.
     fs::write(&readme, "# hairis 9.8.7-rc.1 as source\r\n").unwrap();
     print(&flags);
-    // Nothing is written where anything is refused.
+    // If anything is rejected, nothing is written.
     for flags in [&["--sampler", "best"][..], &["--model", "fur"]] {
         let error = refused(&[flags, &["--out", &path("none")]].concat());
         assert!(error.contains("must be one of"), "{error}");

@@ -1,4 +1,4 @@
-//! Long, slow, short and broken streams.
+//! Streams of requests that are long, slow, short or broken.
 
 use super::{PATHS, command, eval, good, run};
 use core::time::Duration;
@@ -33,7 +33,7 @@ fn byte_order_marks_cost_no_line() {
     let text = good().to_string();
     for path in PATHS {
         let expected = run(&["eval", "--path", path], text.as_bytes()).out;
-        // One file, and two that were joined.
+        // One file, then two that were joined.
         let input = format!("\u{feff}{text}\r\n{text}\r\n\u{feff}{text}\r\n");
         let run = run(&["eval", "--path", path], input.as_bytes());
         assert_eq!(run.code, Some(0), "{path}: {:?}", run.out);

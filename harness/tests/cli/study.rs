@@ -1,4 +1,4 @@
-//! `hairis study` and `hairis merge`: stopped, resumed, split, joined and refused.
+//! Tests of `hairis study` and `hairis merge`: runs that are stopped, resumed, split, joined and rejected.
 
 mod files;
 mod inputs;
@@ -16,12 +16,12 @@ use std::thread;
 use std::time::Instant;
 use tempfile::TempDir;
 
-/// Cells of the short run.
+/// Number of cells of the short run.
 const CELLS: usize = 48;
-/// Part file of a run that is not split.
+/// Name of the part file of a run that is not split.
 const WHOLE: &str = "cells-1-of-1.jsonl";
 
-/// `hairis study --quick` into `dir` on `threads` threads.
+/// Runs `hairis study --quick` into `dir` on `threads` threads.
 fn study(dir: &Path, threads: &str, more: &[&str]) -> Run {
     let mut args = vec!["study", "--quick", "--out", dir.to_str().unwrap()];
     args.extend(more);
@@ -39,11 +39,11 @@ fn merge(out: &Path, parts: &[&Path]) -> Run {
     command(&args).stdin(Stdio::null()).output().unwrap().into()
 }
 
-/// Folder of the figures that a run has kept.
+/// Folder for the figures that a run has kept.
 const FIGURES: &str = "kept";
 
-/// Runs a study twice. At first a drawing, the last of its files, cannot be written: its figures stay, and are copied to the folder
-/// [`FIGURES`].
+/// Runs a study twice. At first a drawing, which is the last of its files, cannot be written. The figures of that run stay, and are copied
+/// to the folder [`FIGURES`].
 fn study_and_keep(dir: &Path, threads: &str, more: &[&str]) -> Run {
     let taken = dir.join("figures/study-01-summary.svg");
     fs::create_dir_all(&taken).unwrap();
@@ -59,7 +59,7 @@ fn study_and_keep(dir: &Path, threads: &str, more: &[&str]) -> Run {
     run
 }
 
-/// Lends the figures that a run in `from` has kept: one in `to` goes on from them. Finding them takes most of a short run.
+/// Copies the figures that a run in `from` has kept, so that a run in `to` continues from them. Computing them takes most of a short run.
 fn lend(from: &Path, to: &Path) {
     copy_figures(&from.join(FIGURES), to);
 }
@@ -73,9 +73,9 @@ fn copy_figures(from: &Path, to: &Path) {
     }
 }
 
-/// A finished run on one thread, made once.
+/// Returns the folder of a finished run on one thread, made once.
 fn reference() -> &'static Path {
-    // A folder of the build, as no destructor removes a static one; one process at a time uses it.
+    // The folder is in that of the build, because no destructor removes a static one; one process at a time uses it.
     static DIR: OnceLock<(File, PathBuf)> = OnceLock::new();
     let (_, dir) = DIR.get_or_init(|| {
         let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study");
@@ -94,7 +94,7 @@ fn reference() -> &'static Path {
     dir
 }
 
-/// Files that depend on the seed and the build alone.
+/// Files that depend only on the seed and the build.
 const ROWS: &[&str] = if cfg!(feature = "parquet") {
     &[
         "study.csv",
@@ -106,7 +106,7 @@ const ROWS: &[&str] = if cfg!(feature = "parquet") {
     &["study.csv", "difference.csv", "refitted.csv"]
 };
 
-/// That `dir` holds the rows of the reference, byte by byte.
+/// Checks that `dir` holds the rows of the reference, byte by byte.
 fn assert_same_rows(dir: &Path, what: &str) {
     for name in ROWS {
         let (got, want) = (
@@ -137,7 +137,7 @@ fn rows_do_not_depend_on_the_number_of_threads_or_on_stops() {
     let ends: Vec<usize> = (0..part.len()).filter(|i| part[*i] == b'\n').collect();
     assert_eq!(ends.len(), CELLS + 1, "a line a cell, and one above");
     let dir = TempDir::new().unwrap();
-    // Before the end of the first line, which runs all cells; before the end of a cell's, after another's, and whole.
+    // Cuts before the end of the first line, so that all cells run; before the end of a cell's line; after another's; and nowhere.
     for cut in [ends[0], ends[20] - 300, ends[30] + 1, part.len()] {
         fs::write(dir.path().join(WHOLE), &part[..cut]).unwrap();
         lend(reference(), dir.path());
@@ -172,7 +172,7 @@ fn a_killed_run_goes_on() {
             .filter(|byte| **byte == b'\n')
             .count()
     };
-    // SIGKILL, which nothing can prepare for, and signals that ask for an end.
+    // SIGKILL, which no process can handle, and signals that request an end.
     for (least, signal, code) in [
         (2, "KILL", None),
         (5, "TERM", Some(143)),
@@ -230,7 +230,7 @@ fn parts_joined_are_the_same_as_one_run() {
             run.err
         );
     }
-    // Not yet all of it: what is missing is named, and nothing is written.
+    // Parts are missing: the message names them, and nothing is written.
     let folders = [shared.path(), apart.path()];
     assert_refused(
         &merge(&out.path().join("new"), &folders),
@@ -249,7 +249,7 @@ fn parts_joined_are_the_same_as_one_run() {
     );
     assert_same_rows(&out.path().join("new"), "four parts");
 
-    // A part that was stopped is named too; one that is there twice does no harm.
+    // A part that was stopped is named too; a part that is given twice does no harm.
     let part = shared.path().join("cells-3-of-4.jsonl");
     let bytes = fs::read(&part).unwrap();
     fs::write(&part, &bytes[..bytes.len() - 10]).unwrap();
@@ -269,7 +269,7 @@ fn parts_joined_are_the_same_as_one_run() {
     assert_same_rows(out.path(), "a part stopped and one twice");
 }
 
-/// Number of timed look-ups of this light in `dir`.
+/// Returns the number of timed look-ups of this light in `dir`.
 fn look_ups(dir: &Path, environment: &str) -> usize {
     let times = fs::read_to_string(dir.join("times.csv")).unwrap();
     times
@@ -406,7 +406,7 @@ fn materials_join_a_study_and_move_no_row() {
         "{:?}",
         whole.out
     );
-    // Another folder or the same flags: a part of other materials is refused.
+    // Other flags with the same folder: a part of other materials is rejected.
     let other = study(&at("whole"), "2", &[]);
     assert_eq!(other.code, Some(2), "{:?}", other.err);
     assert!(other.err[0].contains("materials"), "{:?}", other.err);

@@ -1,4 +1,4 @@
-//! The energy-conserving fibre, formula by formula, in either precision.
+//! The energy-conserving fibre of Chiang et al., formula by formula, in either precision.
 
 mod azimuth;
 mod bessel;
@@ -15,19 +15,18 @@ use hairis_variants::ChiangDesc;
 pub use bessel::bessel_i0_scaled;
 pub use parameters::{ChiangFormulas, Selection};
 
-/// The lobe of all paths with two and more internal reflections, TRRT and what follows.
+/// Lobe of all paths with two and more internal reflections, TRRT and beyond.
 const REST: Lobe = Lobe::slot(3);
 
-/// The model and its sampler for one set of parameters, one `wo` and one offset across the fibre.
+/// The model of Chiang et al. and its sampler, for one set of parameters, one `wo` and one offset across the fibre.
 ///
 /// `S = sum_p A_p M_p N_p / cos theta_i`, p = R, TT, TRT and the rest.
 ///
-/// - Source: Chiang et al. 2016; M of d'Eon et al. 2011, its sampling as d'Eon et al. 2013 have it, mended by
-///   variants/ERRATA.md.
-/// - Energy: the integral of `S cos theta_i` is the sum of A, exactly 1 without absorption. Not reciprocal.
-/// - Domain: within 1e-5 rad of the fibre axis `eval` and `pdf` are 0 and samples are discarded. `wo` of any length; `h` is
+/// - Source: Chiang et al. 2016; M from d'Eon et al. 2011, and its sampling from d'Eon et al. 2013, corrected by variants/ERRATA.md.
+/// - Energy: the integral of `S cos theta_i` is the sum of A, exactly 1 without absorption. The model is not reciprocal.
+/// - Domain: within 1e-5 rad of the fibre axis `eval` and `pdf` are 0 and samples are discarded. `wo` may have any length; `h` is
 ///   clamped to `[-1, 1]`.
-/// - Accuracy: in `f32`, at directions it draws itself, within `2e-6 / min(sqrt(v_tt), s)`.
+/// - Accuracy: in `f32`, at directions that it draws itself, within `2e-6 / min(sqrt(v_tt), s)`.
 ///
 /// ```
 /// use hairis_reference::{ChiangReference, Reference, Selection};
@@ -57,13 +56,13 @@ pub struct ChiangConstants<T> {
     sigma_a: [T; 3],
     selection: Selection,
     variances: PerLobe<T>,
-    /// Sine and cosine of each.
+    /// Sine and cosine of each shift.
     shifts: PerLobe<[T; 2]>,
     logistic: Logistic<T>,
 }
 
 impl<T: Real> ChiangConstants<T> {
-    /// Computes the constants of `parameters`.
+    /// Computes the constants of a material from its parameters and the criterion for the choice of a lobe.
     #[inline]
     #[must_use]
     pub fn new(parameters: &ChiangDesc<T>, selection: Selection) -> Self {
@@ -82,7 +81,7 @@ impl<T: Real> ChiangConstants<T> {
         }
     }
 
-    /// Computes what is constant for `wo` and the offset `h`.
+    /// Computes the constants of the direction `wo` and the offset `h`.
     #[inline]
     #[must_use]
     pub fn prepare(&self, wo: [T; 3], h: T) -> ChiangReference<T> {
@@ -148,35 +147,36 @@ impl<T: Real> ChiangReference<T> {
         ChiangConstants::new(parameters, selection).prepare(wo, h)
     }
 
-    /// Unpolarised reflectance F of the surface at the hit.
+    /// Returns the unpolarised reflectance F of the surface at the hit.
     #[inline]
     #[must_use]
     pub fn fresnel(&self) -> T {
         self.fresnel
     }
 
-    /// Length of one passage through the fibre, in radii.
+    /// Returns the length of one passage through the fibre, in radii.
     #[inline]
     #[must_use]
     pub fn path_length(&self) -> T {
         self.path_length
     }
 
-    /// Azimuth of a lobe's centre from that of `wo`, rad, of any number of turns: `2 p gamma_t - 2 gamma_o + p pi`.
+    /// Returns the azimuth of a lobe's centre from that of `wo`, in rad and of any number of turns:
+    /// `2 p gamma_t - 2 gamma_o + p pi`.
     #[inline]
     #[must_use]
     pub fn centre(&self, lobe: Lobe) -> T {
         self.centres[lobe]
     }
 
-    /// The inclination of a lobe's cone, rad: `-theta'`, where M peaks unless it is wide.
+    /// Returns the inclination of a lobe's cone, in rad: `-theta'`, where M peaks unless the lobe is wide.
     #[inline]
     #[must_use]
     pub fn cone(&self, lobe: Lobe) -> T {
         self.cones[lobe].inclination()
     }
 
-    /// Longitudinal term M of a lobe: d'Eon et al. 2011.
+    /// Evaluates the longitudinal term M of a lobe, after d'Eon et al. 2011.
     ///
     /// - Integral: `M cos theta_i` is 1 over `[-pi/2, pi/2]`.
     #[inline]
@@ -185,7 +185,7 @@ impl<T: Real> ChiangReference<T> {
         self.cones[lobe].density(theta_i.sin(), theta_i.cos())
     }
 
-    /// Azimuthal term N of a lobe at `phi_i - phi_o`, of any number of turns.
+    /// Evaluates the azimuthal term N of a lobe at `phi_i - phi_o`, which may have any number of turns.
     ///
     /// - Integral: 1 over a turn.
     #[inline]
@@ -213,28 +213,28 @@ impl<T: Real> ChiangReference<T> {
         lobes
     }
 
-    /// Sampled sine and cosine of `theta_i` of a lobe: d'Eon et al. 2013.
+    /// Draws sine and cosine of `theta_i` from a lobe, after d'Eon et al. 2013.
     #[inline]
     #[must_use]
     pub fn sample_inclination(&self, lobe: Lobe, xi_cone: T, xi_turn: T) -> [T; 2] {
         self.cones[lobe].direction(self.cones[lobe].sample(xi_cone), xi_turn)
     }
 
-    /// Sampled `1 - cos` of the angle from a lobe's cone, in `[0, 2]`.
+    /// Draws `1 - cos` of the angle from a lobe's cone, in `[0, 2]`, by one uniform number.
     #[inline]
     #[must_use]
     pub fn sample_cone(&self, lobe: Lobe, xi: T) -> T {
         self.cones[lobe].sample(xi)
     }
 
-    /// The inverse of [`sample_cone`](Self::sample_cone).
+    /// Returns the cdf of the number that [`sample_cone`](Self::sample_cone) draws, which is its inverse.
     #[inline]
     #[must_use]
     pub fn cdf_cone(&self, lobe: Lobe, delta: T) -> T {
         self.cones[lobe].cdf(delta)
     }
 
-    /// Sampled azimuth from a lobe's centre, in `[-pi, pi]`.
+    /// Draws the azimuth from a lobe's centre, in `[-pi, pi]`, by one uniform number.
     #[inline]
     #[must_use]
     pub fn sample_azimuth(&self, lobe: Lobe, xi: T) -> T {
@@ -245,7 +245,7 @@ impl<T: Real> ChiangReference<T> {
         }
     }
 
-    /// The inverse of [`sample_azimuth`](Self::sample_azimuth).
+    /// Returns the cdf of the azimuth that [`sample_azimuth`](Self::sample_azimuth) draws, which is its inverse.
     #[inline]
     #[must_use]
     pub fn cdf_azimuth(&self, lobe: Lobe, x: T) -> T {
@@ -258,13 +258,13 @@ impl<T: Real> ChiangReference<T> {
 }
 
 impl<T: Real> Reference<T> for ChiangReference<T> {
-    /// S and the density of the mixture, per steradian.
+    /// Evaluates S and the density of the mixture, per steradian.
     #[inline]
     fn eval_pdf(&self, wi: [T; 3]) -> ([T; 3], T) {
         mix(&self.lobes(wi), &self.probabilities)
     }
 
-    /// Each lobe's value, colour and own density: `M N / cos theta_i`, A, `M N`.
+    /// Evaluates each lobe's value, colour and own density: `M N / cos theta_i`, A, `M N`.
     #[inline]
     fn lobes(&self, wi: [T; 3]) -> PerLobe<LobeAt<T>> {
         let [sin_theta_i, cos_theta_i] = inclination(wi);
@@ -274,16 +274,16 @@ impl<T: Real> Reference<T> for ChiangReference<T> {
         self.lobes_at(sin_theta_i, cos_theta_i, wi[2].atan2(wi[1]) - self.phi_o)
     }
 
-    /// Probability of each lobe; all 0 if everything is absorbed.
+    /// Returns the probability of each lobe; all are 0 if everything is absorbed.
     #[inline]
     fn probabilities(&self) -> PerLobe<T> {
         self.probabilities
     }
 
-    /// The sample of three uniform numbers in `[0, 1)`.
+    /// Draws a sample by three uniform numbers in `[0, 1)`.
     ///
-    /// - The first chooses the lobe, and its remainder the azimuth; the other two choose the inclination.
-    /// - A sample within 1e-5 rad of the axis, or of zero density, is discarded. It counts in N.
+    /// - The first number chooses the lobe, and its remainder the azimuth; the other two choose the inclination.
+    /// - A sample within 1e-5 rad of the axis, or of zero density, is discarded, but counts as a sample.
     #[inline]
     fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
         let Some((lobe, rest)) = choose(&self.probabilities, xi[0]) else {
@@ -303,14 +303,14 @@ impl<T: Real> Reference<T> for ChiangReference<T> {
         )
     }
 
-    /// A of each lobe, linear RGB: the share of the light that leaves by it. It is the lobe's directional albedo.
+    /// Returns A of each lobe, linear RGB: the share of the light that leaves by the lobe, which is its directional albedo.
     #[inline]
     fn albedo(&self) -> PerLobe<[T; 3]> {
         self.attenuation
     }
 }
 
-/// F and `1 - F` of unpolarised light at an angle of this cosine; the difference is exact where F is nearly 1.
+/// Computes F and `1 - F` of unpolarised light at an angle of this cosine; the difference is exact where F is nearly 1.
 fn fresnel<T: Real>(contrast: T, eta: T, cos: T) -> [T; 2] {
     let (half, two, one) = (T::from_f64(0.5), T::from_f64(2.0), T::from_f64(1.0));
     // eta cos of the refracted angle.
@@ -329,7 +329,8 @@ fn fresnel<T: Real>(contrast: T, eta: T, cos: T) -> [T; 2] {
     ]
 }
 
-/// A of R, TT, TRT and of all the rest, a geometric series: Chiang et al. 2016, section 3; `depth` is that of one passage.
+/// Computes A of R, TT, TRT and of all the rest, a geometric series, after Chiang et al. 2016, section 3; `depth` is that of one
+/// passage.
 fn attenuation<T: Real>(fresnel: T, passed: T, depth: [T; 3]) -> PerLobe<[T; 3]> {
     let mut all = PerLobe([[fresnel; 3]; 4]);
     for (channel, depth) in depth.into_iter().enumerate() {

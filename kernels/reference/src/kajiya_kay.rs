@@ -1,4 +1,4 @@
-//! Kajiya and Kay's model, formula by formula, in either precision.
+//! The model of Kajiya and Kay, formula by formula, in either precision.
 
 use crate::steps::{Fixed, GRAZING, choose, finish_sample, fixed, inclination, mix, sum_to_one};
 use crate::{LobeAt, Real, Reference, ReferenceSample, integrate};
@@ -8,15 +8,15 @@ use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc};
 const DIFFUSE: Lobe = Lobe::slot(0);
 const SPECULAR: Lobe = Lobe::slot(1);
 
-/// The model and its sampler for one set of parameters and one `wo`.
+/// The model of Kajiya and Kay and its sampler, for one set of parameters and one `wo`.
 ///
 /// `S = kd / pi^2 + ks c^p / (2 pi B(p + m) cos^(2 - m) theta_i)`, with `c = max(0, cos(theta_i + theta_o))`, `m` 2 for
 /// [`Form::Reciprocal`] and 1 for [`Form::Published`], and `B(n)` the integral of `cos^n` over `[-pi/2, pi/2]`.
 ///
-/// - Source: Kajiya & Kay 1989, section 4, with its cosines once (variants/ERRATA.md E3, E4) and normalised (E5). The sampler
-///   is ours: the polar method for a power of a cosine, and a choice of sign for what the power leaves out.
-/// - Domain: within 1e-5 rad of the fibre axis `eval` and `pdf` are 0 and samples are discarded. `wo` of any length.
-/// - Accuracy: in `f32` the highlight is good to about `1e-7 exponent`; intensities above 1e37 may overflow.
+/// - Source: Kajiya & Kay 1989, section 4, with its cosines once (variants/ERRATA.md E3, E4) and normalised (E5). The sampler is
+///   ours: the polar method for a power of a cosine, and a choice of sign for the factor that the power leaves out.
+/// - Domain: within 1e-5 rad of the fibre axis `eval` and `pdf` are 0 and samples are discarded. `wo` may have any length.
+/// - Accuracy: in `f32` the highlight is accurate to about `1e-7 exponent`; intensities above 1e37 may overflow.
 ///
 /// ```
 /// use hairis_reference::{KajiyaKayReference, Reference};
@@ -36,9 +36,10 @@ pub struct KajiyaKayReference<T> {
     probabilities: PerLobe<T>,
 }
 
-/// `B(n) = sqrt(pi) Gamma((n + 1) / 2) / Gamma(n / 2 + 1)`, the integral of `cos^n x` over `[-pi/2, pi/2]`, `n > -1`.
+/// Computes `B(n) = sqrt(pi) Gamma((n + 1) / 2) / Gamma(n / 2 + 1)`, the integral of `cos^n x` over `[-pi/2, pi/2]`, `n > -1`.
 ///
-/// - Accuracy: 1e-11 relative for `n` up to 1e4 in `f64`; formed in `f64` whatever `T`, as the two logarithms cancel.
+/// - Accuracy: 1e-11 relative for `n` up to 1e4 in `f64`. The computation is in `f64` whatever `T`, because the two logarithms
+///   cancel.
 ///
 /// ```
 /// use hairis_reference::cosine_power_integral;
@@ -52,7 +53,7 @@ pub fn cosine_power_integral<T: Real>(n: T) -> T {
     T::from_f64(Real::sqrt(core::f64::consts::PI) * Real::exp(log))
 }
 
-/// `cos^m`, 0 where the cosine is negative.
+/// Returns `cos^m`, or 0 if the cosine is negative.
 fn positive_power<T: Real>(cos: T, form: Form) -> T {
     let cos = cos.max(T::default());
     match form {
@@ -61,7 +62,7 @@ fn positive_power<T: Real>(cos: T, form: Form) -> T {
     }
 }
 
-/// Constants of a material: the norms, which cost four logarithms of the gamma function.
+/// Constants of a material: the norms, which take four logarithms of the gamma function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KajiyaKayConstants<T> {
     parameters: KajiyaKayDesc<T>,
@@ -70,12 +71,12 @@ pub struct KajiyaKayConstants<T> {
     norm_pdf: T,
     /// Means of `kd` and of `ks`.
     weights: [T; 2],
-    /// Share of `ks` that comes back at `theta_o` a right angle, but for the tail beyond the pole.
+    /// Share of `ks` that returns if `theta_o` is a right angle, without the tail beyond the pole.
     grazing: T,
 }
 
 impl<T: Real> KajiyaKayConstants<T> {
-    /// Computes the constants of `parameters`.
+    /// Computes the constants of a material from its parameters.
     #[inline]
     #[must_use]
     pub fn new(parameters: &KajiyaKayDesc<T>) -> Self {
@@ -99,8 +100,8 @@ impl<T: Real> KajiyaKayConstants<T> {
         }
     }
 
-    /// Computes the constants of `wo`. Lobes are chosen by `kd`, and by `ks` times the share of it that is reflected, without
-    /// the highlight's tail beyond the poles.
+    /// Computes the constants of `wo`. Lobes are chosen by `kd`, and by `ks` times the share of it that is reflected, without the
+    /// highlight's tail beyond the poles.
     #[inline]
     #[must_use]
     pub fn prepare(&self, wo: [T; 3]) -> KajiyaKayReference<T> {
@@ -162,8 +163,8 @@ impl<T: Real> KajiyaKayReference<T> {
         lobes
     }
 
-    /// Sampled sine and cosine of `theta_i` of the highlight, and the remainder of `xi_sign` for the azimuth: the angle of
-    /// [`sample_angle`](Self::sample_angle), or its negative, less `theta_o`.
+    /// Draws sine and cosine of `theta_i` from the highlight, and returns the remainder of `xi_sign` for the azimuth. The
+    /// inclination is the angle of [`sample_angle`](Self::sample_angle), or its negative, less `theta_o`.
     #[inline]
     #[must_use]
     pub fn sample_specular(&self, xi_radius: T, xi_turn: T, xi_sign: T) -> ([T; 2], T) {
@@ -185,8 +186,8 @@ impl<T: Real> KajiyaKayReference<T> {
         )
     }
 
-    /// Sine and cosine of an angle x from the cone of mirror directions, of density `cos^p x / B(p)`: the polar method, of squared
-    /// radius `1 - (1 - xi_radius)^(2 / p)`. For diffuse light, p = 2 and that is `xi_radius`.
+    /// Draws sine and cosine of an angle x from the cone of mirror directions, of density `cos^p x / B(p)`, by the polar method with
+    /// the squared radius `1 - (1 - xi_radius)^(2 / p)`. For diffuse light p is 2, and the squared radius is `xi_radius`.
     #[inline]
     #[must_use]
     pub fn sample_angle(&self, xi_radius: T, xi_turn: T) -> [T; 2] {
@@ -194,14 +195,14 @@ impl<T: Real> KajiyaKayReference<T> {
         from_disk(-(power * (-xi_radius).ln_1p()).exp_m1(), xi_turn)
     }
 
-    /// Probability that x is kept and not turned into -x: the share of `cos_+^m theta_i` at x in the sum of both.
+    /// Returns the probability that x is kept and not turned into -x: the share of `cos_+^m theta_i` at x in the sum of both.
     #[inline]
     #[must_use]
     pub fn share_kept(&self, sin_x: T, cos_x: T) -> T {
         let (sin_o, cos_o) = (self.sin_theta_o, self.cos_theta_o);
         let kept = positive_power(cos_x * cos_o + sin_x * sin_o, self.parameters.form);
         let turned = positive_power(cos_x * cos_o - sin_x * sin_o, self.parameters.form);
-        // Both are 0 for wo along the fibre and x = 0 alone, a sample that is discarded.
+        // Both are 0 only for wo along the fibre and x = 0, a sample that is discarded.
         if kept + turned > T::default() {
             kept / (kept + turned)
         } else {
@@ -209,9 +210,9 @@ impl<T: Real> KajiyaKayReference<T> {
         }
     }
 
-    /// The share of `ks` that comes back: the integral of `cos_+^p x cos_+^m (x - theta_o)` over x, over `B(p + m)`.
+    /// Integrates the share of `ks` that returns: the integral of `cos_+^p x cos_+^m (x - theta_o)` over x, divided by `B(p + m)`.
     ///
-    /// - Accuracy: 1e-9 in `f64`. At most 1, and 1 at `theta_o = 0`.
+    /// - Accuracy: 1e-9 in `f64`. The share is at most 1, and is 1 at `theta_o = 0`.
     #[inline]
     #[must_use]
     pub fn specular_albedo(&self) -> T {
@@ -228,13 +229,13 @@ impl<T: Real> KajiyaKayReference<T> {
 }
 
 impl<T: Real> Reference<T> for KajiyaKayReference<T> {
-    /// S and the density of the mixture, per steradian.
+    /// Evaluates S and the density of the mixture, per steradian.
     #[inline]
     fn eval_pdf(&self, wi: [T; 3]) -> ([T; 3], T) {
         mix(&self.lobes(wi), &self.probabilities)
     }
 
-    /// Each lobe's value, colour and own density; zeros in slots 2 and 3.
+    /// Evaluates each lobe's value, colour and own density, which are zeros in slots 2 and 3.
     ///
     /// The specular density is `c^p cos^(m-1) theta_i / (pi B(p) (cos^m theta_i + cos_+^m (theta_i + 2 theta_o)))`.
     #[inline]
@@ -242,17 +243,17 @@ impl<T: Real> Reference<T> for KajiyaKayReference<T> {
         self.lobes_at(inclination(wi))
     }
 
-    /// Probability of each lobe; all 0 if nothing scatters.
+    /// Returns the probability of each lobe; all are 0 if nothing scatters.
     #[inline]
     fn probabilities(&self) -> PerLobe<T> {
         self.probabilities
     }
 
-    /// The sample of three uniform numbers in `[0, 1)`.
+    /// Draws a sample by three uniform numbers in `[0, 1)`.
     ///
-    /// - The first chooses the lobe, and its remainder serves again; the third chooses the sign of the highlight's angle, and
-    ///   its remainder the azimuth.
-    /// - A sample within 1e-5 rad of the axis, or of zero density, is discarded. It counts in N.
+    /// - The first number chooses the lobe, and its remainder is used again; the third chooses the sign of the highlight's angle,
+    ///   and its remainder the azimuth.
+    /// - A sample within 1e-5 rad of the axis, or of zero density, is discarded, but counts as a sample.
     #[inline]
     fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
         let Some((lobe, rest)) = choose(&self.probabilities, xi[0]) else {
@@ -272,7 +273,7 @@ impl<T: Real> Reference<T> for KajiyaKayReference<T> {
         )
     }
 
-    /// Directional albedo of each lobe, linear RGB.
+    /// Returns the directional albedo of each lobe, linear RGB.
     #[inline]
     fn albedo(&self) -> PerLobe<[T; 3]> {
         let (p, zero) = (&self.parameters, T::default());
@@ -281,7 +282,7 @@ impl<T: Real> Reference<T> for KajiyaKayReference<T> {
     }
 }
 
-/// Sine and cosine of the angle at a squared radius of the unit disk and `xi_turn` of half a turn.
+/// Returns sine and cosine of the angle at a squared radius of the unit disk and `xi_turn` of half a turn.
 fn from_disk<T: Real>(radius_sq: T, xi_turn: T) -> [T; 2] {
     let one = T::from_f64(1.0);
     let (sin, cos) = ((T::PI * xi_turn).sin(), (T::PI * xi_turn).cos());

@@ -1,7 +1,8 @@
-//! Formulas of the models of [`hairis`] line by line, in `f32` and in `f64`: the second source beside the kernels.
+//! Formulas of the models of [`hairis`] line by line, in `f32` and in `f64`: the second source of each model beside its kernel.
 //!
-//! In `f64` they are the reference of tests and reports, in `f32` the scalar baseline of speed comparisons: the code people
-//! write from the papers today. The kernels share no code with them, only the plain structs of their parameters.
+//! In `f64` the formulas are the reference of tests and reports. In `f32` they are the scalar baseline of speed comparisons, the
+//! code that people write from the papers today. The kernels share no code with the formulas, only the plain structs of their
+//! parameters.
 //!
 //! | model | formulas | source |
 //! |---|---|---|
@@ -10,11 +11,11 @@
 //! | [`KajiyaKay`](hairis_variants::KajiyaKay) | [`KajiyaKayReference`] | Kajiya & Kay 1989 |
 //! | [`Chiang`](hairis_variants::Chiang) | [`ChiangReference`] | Chiang et al. 2016 |
 //!
-//! All implement [`Reference`], and `Box<dyn Reference<f64>>` is the handle of a model chosen at run time: see [`reference()`]
-//! for the models of the registry, [`HairFormulas`] for the published model. [`Formulas`] pairs a kernel with its formulas.
+//! All implement [`Reference`], and `Box<dyn Reference<f64>>` is the handle of a model chosen at run time: see [`reference()`] for
+//! the models of the registry, and [`HairFormulas`] for the published model. [`Formulas`] pairs a kernel with its formulas.
 //!
 //! - Conventions: those of [`hairis`]. `wo` is the paper's `omega_r`, `wi` its `omega_i`.
-//! - Numbers: [`Real`], elementary functions of `libm` unless the caller brings others.
+//! - Numbers: [`Real`], with the elementary functions of `libm` unless the caller provides others.
 
 mod chiang;
 pub mod errata;

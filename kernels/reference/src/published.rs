@@ -1,13 +1,13 @@
 //! The published model, formula by formula, with the published sampler and the matched one.
 //!
-//! Angles come from `atan2`, every factor is formed as it is printed, and only what section 3.3 of the paper amortises is
-//! kept in [`HairReference`].
+//! Angles are computed by `atan2`, every factor is computed as it is printed, and [`HairReference`] keeps only the constants that
+//! section 3.3 of the paper amortises.
 //!
-//! - Source: Ou et al. 2012, sections 3.1 to 3.3 and appendices A to D, mended by ERRATA E1, E2 and E3.
-//! - Domain: within 1e-5 rad of the fibre axis `eval` and `pdf` are 0 and samples are discarded. A `wo` on the axis
-//!   is legal; its azimuth is taken as 0.
-//! - Accuracy: in `f32`, rounded angles cost up to 1e-7 rad, so a lobe of width `b` is good to about `1e-7 / b`
-//!   beside its peak; intensities above 1e27 may overflow.
+//! - Source: Ou et al. 2012, sections 3.1 to 3.3 and appendices A to D, corrected by ERRATA E1, E2 and E3.
+//! - Domain: within 1e-5 rad of the fibre axis `eval` and `pdf` are 0 and samples are discarded. A `wo` on the axis is legal; its
+//!   azimuth counts as 0.
+//! - Accuracy: in `f32`, rounded angles cost up to 1e-7 rad, so that a lobe of width `b` is accurate to about `1e-7 / b` beside its
+//!   peak; intensities above 1e27 may overflow.
 
 mod albedo;
 mod cauchy;
@@ -25,7 +25,7 @@ pub use cauchy::CauchyDensity;
 pub use formulas::{HairFormulas, Shape};
 pub use matched::MatchedReference;
 
-/// The model and its published sampler for one set of parameters and one `wo`.
+/// The published model and its published sampler, for one set of parameters and one `wo`.
 ///
 /// ```
 /// use hairis::HairParams;
@@ -41,11 +41,11 @@ pub struct HairReference<T> {
     shape: Shape,
     theta_o: T,
     phi_o: T,
-    /// Densities of `theta_h`; the glint has that of TRT.
+    /// Densities of `theta_h`; the glint has the density of TRT.
     longitudinal: PerLobe<CauchyDensity<T>>,
-    /// Density of `phi` in [0, 2 pi] of TT.
+    /// Density of the `phi` of TT in [0, 2 pi].
     transmission: CauchyDensity<T>,
-    /// Density of `|phi|` of the glint.
+    /// Density of the `|phi|` of the glint.
     glint: CauchyDensity<T>,
     energies: PerLobe<T>,
     probabilities: PerLobe<T>,
@@ -58,12 +58,12 @@ struct Angles<T> {
     cos_theta_i: T,
     /// `phi_o - phi_i` in (-pi, pi].
     phi: T,
-    /// `cos(phi / 2)`: R and TRT-g have it in their value and in their density.
+    /// `cos(phi / 2)`, a factor of R and TRT-g in both value and density.
     cos_half_phi: T,
 }
 
 impl<T: Real> Angles<T> {
-    /// Angles of a sample: an inclination, and an azimuth within a turn of [-pi, pi].
+    /// Makes the angles of a sample from an inclination and an azimuth within a turn of [-pi, pi].
     fn new(theta_i: T, phi: T) -> Self {
         let phi = wrapped(phi);
         Self {
@@ -76,7 +76,7 @@ impl<T: Real> Angles<T> {
 }
 
 impl<T: Real> HairReference<T> {
-    /// Computes what is constant for `parameters` and `wo`: A, B, C, D and the energies (section 3.3).
+    /// Computes the constants of `parameters` and `wo`: A, B, C, D and the energies (section 3.3).
     ///
     /// - Units: rad; `wo` a unit vector in (u, v, w).
     #[inline]
@@ -113,17 +113,17 @@ impl<T: Real> HairReference<T> {
         }
     }
 
-    /// The estimated energies of the lobes, on which the choice of a lobe rests: section 3.2.3, with `I` the mean of
-    /// the three channels.
+    /// Returns the estimated energies of the lobes, by which a lobe is chosen: section 3.2.3, with `I` the mean of the three
+    /// channels.
     ///
-    /// - Integral: each is that of its `M(theta_h) N(phi)` over the whole line for Gaussians (ERRATA E4, E6).
+    /// - Integral: each energy is the integral of its `M(theta_h) N(phi)` over the whole line for Gaussians (ERRATA E4, E6).
     #[inline]
     #[must_use]
     pub fn energies(&self) -> PerLobe<T> {
         self.energies
     }
 
-    /// `None` within 1e-5 rad of the axis.
+    /// Computes the angles of `wi`, or returns `None` within 1e-5 rad of the axis.
     #[inline]
     fn angles(&self, wi: [T; 3]) -> Option<Angles<T>> {
         let cos_theta_i = (wi[1] * wi[1] + wi[2] * wi[2]).sqrt();
@@ -186,7 +186,7 @@ impl<T: Real> HairReference<T> {
         pdfs
     }
 
-    /// Each lobe's value, colour and density, the densities given.
+    /// Computes each lobe's value, colour and density, where the densities are given.
     #[inline]
     fn lobes_with(&self, at: &Angles<T>, pdfs: &PerLobe<T>) -> PerLobe<LobeAt<T>> {
         let (values, colours) = (self.values_at(at), colours(&self.parameters));
@@ -201,7 +201,7 @@ impl<T: Real> HairReference<T> {
         lobes
     }
 
-    /// The sample of `lobe` at these angles: S, and the density that is given for them.
+    /// Makes the sample of `lobe` at these angles, with S and the given density.
     fn finish(&self, lobe: Lobe, wi: [T; 3], at: &Angles<T>, pdf: T) -> ReferenceSample<T> {
         if at.cos_theta_i < T::from_f64(GRAZING) || pdf <= T::default() {
             return ReferenceSample::default();
@@ -217,7 +217,7 @@ impl<T: Real> HairReference<T> {
     }
 }
 
-/// The model at `wi`, and the published sampler.
+/// The published model at `wi`, and the published sampler.
 impl<T: Real> Reference<T> for HairReference<T> {
     #[inline]
     fn eval_pdf(&self, wi: [T; 3]) -> ([T; 3], T) {
@@ -249,15 +249,16 @@ impl<T: Real> Reference<T> for HairReference<T> {
         })
     }
 
-    /// Its energy over their sum.
+    /// Returns the probability of each lobe: its energy over the sum of the energies.
     #[inline]
     fn probabilities(&self) -> PerLobe<T> {
         self.probabilities
     }
 
-    /// A lobe by energy, `theta_i` and `phi` by inversion (section 3.2).
+    /// Draws a lobe by its energy, and `theta_i` and `phi` by inversion (section 3.2).
     ///
-    /// Value and density are formed from the angles drawn; those at `wi` are the same but for the rounding of those angles.
+    /// Value and density are computed from the angles drawn; those computed from `wi` are the same except for the rounding of the
+    /// angles.
     #[inline]
     fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
         let Some((lobe, _)) = choose(&self.probabilities, xi[0]) else {
@@ -279,12 +280,12 @@ impl<T: Real> Reference<T> for HairReference<T> {
     }
 }
 
-/// The colour of each lobe; the glint's has its strength in its value.
+/// Returns the colour of each lobe; the strength of the glint is in its value.
 fn colours<T: Real>(p: &HairDesc<T>) -> PerLobe<[T; 3]> {
     PerLobe([p.i_r, p.i_tt, p.i_trt, p.i_trt])
 }
 
-/// Section 3.2.3.
+/// Computes the energies of the lobes by section 3.2.3.
 #[inline]
 fn energies<T: Real>(p: &HairDesc<T>) -> PerLobe<T> {
     let mean = |rgb: [T; 3]| (rgb[0] + rgb[1] + rgb[2]) / T::from_f64(3.0);
@@ -298,7 +299,7 @@ fn energies<T: Real>(p: &HairDesc<T>) -> PerLobe<T> {
     energies
 }
 
-/// Azimuth of `w`, 0 on the axis whatever the signs of its zeros.
+/// Returns the azimuth of `w`, which is 0 on the axis whatever the signs of its zeros.
 #[inline]
 fn azimuth<T: Real>(w: [T; 3]) -> T {
     if w[1] == T::default() && w[2] == T::default() {
@@ -308,7 +309,7 @@ fn azimuth<T: Real>(w: [T; 3]) -> T {
     }
 }
 
-/// `phi` in [-2 pi, 2 pi] brought to (-pi, pi].
+/// Moves `phi` from [-2 pi, 2 pi] to (-pi, pi].
 #[inline]
 fn wrapped<T: Real>(phi: T) -> T {
     if phi > T::PI {
@@ -320,7 +321,7 @@ fn wrapped<T: Real>(phi: T) -> T {
     }
 }
 
-/// `cos(phi / 2)`, never below 0 at the seam.
+/// Returns `cos(phi / 2)`, which is never below 0 at the seam.
 #[inline]
 fn cos_half<T: Real>(phi: T) -> T {
     (phi * T::from_f64(0.5)).cos().max(T::default())

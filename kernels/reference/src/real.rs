@@ -1,9 +1,9 @@
-//! The number types that the reference is written for.
+//! Number types that the formulas are written for.
 
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A real number with elementary functions: `f32` or `f64` with those of `libm`, or a type of the caller's with others.
+/// Real number with elementary functions: `f32` or `f64` with those of `libm`, or a type of the caller's with others.
 ///
 /// ```
 /// use hairis_reference::Real;
@@ -26,78 +26,78 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// pi.
+    /// The number pi.
     const PI: Self;
     /// Distance from 1 to the next larger number.
     const EPSILON: Self;
-    /// `value`, rounded for `f32`.
+    /// Converts `value`, rounded for `f32`.
     #[must_use]
     fn from_f64(value: f64) -> Self;
-    /// `value`, exactly.
+    /// Converts `value` exactly.
     #[must_use]
     fn from_f32(value: f32) -> Self;
-    /// The value as an `f64`, exactly.
+    /// Returns the value as an `f64`, exactly.
     #[must_use]
     fn to_f64(self) -> f64;
-    /// Complementary error function.
+    /// Computes the complementary error function.
     #[must_use]
     fn erfc(self) -> Self;
-    /// Sine.
+    /// Computes the sine.
     #[must_use]
     fn sin(self) -> Self;
-    /// Cosine.
+    /// Computes the cosine.
     #[must_use]
     fn cos(self) -> Self;
-    /// Tangent.
+    /// Computes the tangent.
     #[must_use]
     fn tan(self) -> Self;
-    /// Arc sine.
+    /// Computes the arc sine.
     #[must_use]
     fn asin(self) -> Self;
-    /// Arc tangent.
+    /// Computes the arc tangent.
     #[must_use]
     fn atan(self) -> Self;
-    /// Angle of the point (`x`, `self`).
+    /// Computes the angle of the point (`x`, `self`).
     #[must_use]
     fn atan2(self, x: Self) -> Self;
-    /// Exponential; 0 where the result would be denormal. `libm` spends five times the usual time there on raising a
-    /// flag that is never read, which would make a baseline in `f32` look slower than it is.
+    /// Computes the exponential, and returns 0 where the result would be denormal. `libm` spends five times the usual time there on
+    /// raising a flag that is never read. A baseline in `f32` would then look slower than it is.
     #[must_use]
     fn exp(self) -> Self;
-    /// `exp(self) - 1`, without cancellation near 0.
+    /// Computes `exp(self) - 1`, without cancellation near 0.
     #[must_use]
     fn exp_m1(self) -> Self;
-    /// Natural logarithm.
+    /// Computes the natural logarithm.
     #[must_use]
     fn ln(self) -> Self;
-    /// `ln(1 + self)`, without cancellation near 0.
+    /// Computes `ln(1 + self)`, without cancellation near 0.
     #[must_use]
     fn ln_1p(self) -> Self;
-    /// Natural logarithm of the gamma function, for `self > 0`.
+    /// Computes the natural logarithm of the gamma function, for `self > 0`.
     #[must_use]
     fn ln_gamma(self) -> Self;
-    /// `self` to the power `exponent`.
+    /// Computes `self` to the power `exponent`.
     #[must_use]
     fn powf(self, exponent: Self) -> Self;
-    /// Hyperbolic tangent.
+    /// Computes the hyperbolic tangent.
     #[must_use]
     fn tanh(self) -> Self;
-    /// The nearest whole number; halves go away from 0.
+    /// Rounds to the nearest whole number; halves round away from 0.
     #[must_use]
     fn round(self) -> Self;
-    /// Square root.
+    /// Computes the square root.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// `sqrt(self^2 + other^2)` without overflow.
+    /// Computes `sqrt(self^2 + other^2)` without overflow.
     #[must_use]
     fn hypot(self, other: Self) -> Self;
-    /// Absolute value.
+    /// Returns the absolute value.
     #[must_use]
     fn abs(self) -> Self;
-    /// The smaller of two numbers; the one that is not NaN if one is.
+    /// Returns the smaller of two numbers; if one is NaN, the other.
     #[must_use]
     fn min(self, other: Self) -> Self;
-    /// The larger of two numbers; the one that is not NaN if one is.
+    /// Returns the larger of two numbers; if one is NaN, the other.
     #[must_use]
     fn max(self, other: Self) -> Self;
 }

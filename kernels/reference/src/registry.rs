@@ -1,4 +1,4 @@
-//! The formulas of the models of the registry.
+//! Formulas of the models of the registry.
 
 use crate::{
     ChiangConstants, ChiangFormulas, ChiangReference, HairReference, KajiyaKayConstants,
@@ -13,55 +13,56 @@ use hairis_variants::{
     ModelId, Parameters as _, Registered, RegisteredBell, Values, hair_desc,
 };
 
-/// A model of the registry with its formulas.
+/// Model of the registry, paired with its formulas.
 pub trait Formulas: Registered {
     /// Numbers that the formulas compute once per material.
     type Constants<T: Real>: Copy + Debug + Send + Sync;
-    /// The formulas at one shading point.
+    /// Formulas at one shading point.
     type Point<T: Real>: Reference<T> + Copy + 'static;
-    /// The accuracy that comparisons with the formulas require.
+    /// Accuracy that comparisons with the formulas require.
     const ACCURACY: Accuracy;
 
-    /// The formulas for these parameters.
+    /// Computes the constants of the formulas from checked parameters.
     fn formulas<T: Real>(params: &Self::Params) -> Self::Constants<T>;
 
-    /// The formulas for the numbers of `exact`, in any precision; `params` are the same, rounded, and give the words.
+    /// Computes the constants of the formulas from the numbers of `exact`, in any precision. `params` are the same numbers, rounded,
+    /// and provide the settings that are words.
     fn exact_formulas<T: Real>(params: &Self::Params, exact: &Values<T>) -> Self::Constants<T>;
 
-    /// The formulas seen from `wo` at the offset `h`.
+    /// Prepares the formulas for the direction `wo` at the offset `h`.
     fn point<T: Real>(constants: &Self::Constants<T>, wo: [T; 3], h: T) -> Self::Point<T>;
 
-    /// Absolute error allowed of S beside the relative one, by channel: 0 unless the model cuts its tails.
+    /// Returns the absolute error of S allowed beside the relative error, by channel: 0 unless the model cuts its tails.
     fn slack(params: &Self::Params, wo: [f64; 3], wi: [f64; 3]) -> [f64; 3];
 }
 
-/// Largest errors against the formulas in `f64`: relative, of a cdf absolute.
+/// Largest errors allowed against the formulas in `f64`: relative, except that of a cdf, which is absolute.
 ///
 /// - Domain: directions further than 1e-3 rad from the axis, random materials of [`Field::draw`](hairis_variants::Field::draw).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// S at a given direction.
+    /// Error of S at a given direction.
     pub value: f64,
-    /// Density of a given direction.
+    /// Error of the density of a given direction.
     pub pdf: f64,
-    /// S that a sample reports, at its direction.
+    /// Error of the S that a sample reports, at its direction.
     pub sample_value: f64,
-    /// Density that a sample reports.
+    /// Error of the density that a sample reports.
     pub sample_pdf: f64,
-    /// Weight that a sample reports.
+    /// Error of the weight that a sample reports.
     pub sample_weight: f64,
     /// Distance of [`Reference::cdf`] from the numbers of a sample.
     pub cdf: f64,
-    /// Whether the density has the [`slack`] of S, as a share of it.
+    /// True if the density is allowed the [`slack`] of S as well, as the same share of its value.
     pub slack_in_pdf: bool,
 }
 
-/// Work on a model of the registry as a type: see [`visit`].
+/// Computation on a model of the registry as a type: see [`visit`].
 pub trait Visitor {
-    /// Result of the work.
+    /// Result of the computation.
     type Output;
 
-    /// Does the work on the model `M`.
+    /// Computes the result for the model `M`.
     fn visit<M: Formulas>(self) -> Self::Output;
 }
 
@@ -78,11 +79,11 @@ macro_rules! formulas {
 }
 hairis_variants::for_each_model! { formulas }
 
-/// The formulas of a model for these values, seen from `wo` at the offset `h`.
+/// Prepares the formulas of a model with these values, for the direction `wo` at the offset `h`.
 ///
 /// # Errors
 ///
-/// If a value is out of its range.
+/// Returns an error if a value is out of its range.
 pub fn reference<T: Real>(
     id: ModelId,
     values: &Values,
@@ -92,11 +93,12 @@ pub fn reference<T: Real>(
     exact_reference(id, values, &values.map(T::from_f32), wo, h)
 }
 
-/// The formulas for the numbers of `exact`, seen from `wo` at the offset `h`. `values` are the same, rounded.
+/// Prepares the formulas with the numbers of `exact`, for the direction `wo` at the offset `h`. `values` are the same numbers,
+/// rounded.
 ///
 /// # Errors
 ///
-/// If one of `values` is out of its range; `exact` is not checked.
+/// Returns an error if one of `values` is out of its range; `exact` is not checked.
 pub fn exact_reference<T: Real>(
     id: ModelId,
     values: &Values,
@@ -116,7 +118,7 @@ pub fn exact_reference<T: Real>(
     visit(id, Prepare(values, exact, wo, h))
 }
 
-/// The accuracy that comparisons with the formulas require.
+/// Returns the accuracy that comparisons with the formulas of a model require.
 #[must_use]
 pub fn accuracy(id: ModelId) -> Accuracy {
     struct Required;
@@ -129,11 +131,11 @@ pub fn accuracy(id: ModelId) -> Accuracy {
     visit(id, Required)
 }
 
-/// Absolute error allowed of S, by channel: see [`Formulas::slack`].
+/// Returns the absolute error of S that is allowed, by channel: see [`Formulas::slack`].
 ///
 /// # Errors
 ///
-/// If a value is out of its range.
+/// Returns an error if a value is out of its range.
 pub fn slack(
     id: ModelId,
     values: &Values,
@@ -150,10 +152,10 @@ pub fn slack(
     visit(id, Allowed(values, wo, wi))
 }
 
-/// A bell of the registry in the formulas.
+/// Bell of the registry, as the formulas have it.
 trait Bell: RegisteredBell {
     const SHAPE: Shape;
-    /// Relative errors allowed of S, of what a matched sampler reports, and of its cdf.
+    /// Relative errors allowed of S, of the results of a matched sampler, and of its cdf.
     const ERRORS: [f64; 3];
 }
 
@@ -167,7 +169,7 @@ impl Bell for Cauchy {
     const ERRORS: [f64; 3] = [1e-5; 3];
 }
 
-/// A weight of the published sampler is a value over a density: its bound is the sum of theirs. A cdf moves by 20 times as
+/// A weight of the published sampler is a value over a density, so that its bound is the sum of theirs. A cdf moves by 20 times as
 /// much as the angle on the narrowest lobe, of a degree, and the angle of a rounded direction by 2e-7 rad.
 impl<B: Bell> Formulas for Published<B> {
     type Constants<T: Real> = HairDesc<T>;
@@ -205,9 +207,10 @@ impl<B: Bell> Formulas for Published<B> {
     }
 }
 
-/// A matched density is made of the model's own bells, and is allowed what S is; samples stay away from where S is known
-/// worst. The largest seen of their density, S and weight is 2e-5 (Gaussian) and 9.8e-6 (Cauchy); of their cdf, 2.5e-5 on
-/// Gaussian lobes that lie off the sphere and fall from its pole, and 2.4e-6 on Cauchy ones (four seeds, in full).
+/// A matched density is made of the model's own bells, and is allowed the same error as S; samples stay away from directions where S
+/// is known worst. The largest error seen of their density, S and weight is 2e-5 (Gaussian) and 9.8e-6 (Cauchy). The largest of
+/// their cdf is 2.5e-5 on Gaussian lobes that lie off the sphere and fall from its pole, and 2.4e-6 on Cauchy lobes (four seeds, in
+/// full).
 impl<B: Bell, const BANDS: usize> Formulas for Matched<B, BANDS> {
     type Constants<T: Real> = HairDesc<T>;
     type Point<T: Real> = MatchedReference<T>;
@@ -244,7 +247,7 @@ impl<B: Bell, const BANDS: usize> Formulas for Matched<B, BANDS> {
     }
 }
 
-/// The kernels' Gaussians are 0 from between `2^-114` and `2^-115` down, each of the four lobes.
+/// Returns the slack of the published model: in the kernels each of the four Gaussians is 0 from between `2^-114` and `2^-115` down.
 fn hair_slack(shape: Shape, params: &HairParams, wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
     const FLOOR: f64 = 1.0 / (1_u128 << 114) as f64;
     if shape != Shape::Gaussian {
@@ -259,7 +262,7 @@ fn hair_slack(shape: Shape, params: &HairParams, wo: [f64; 3], wi: [f64; 3]) -> 
     })
 }
 
-/// For exponents up to 1000.
+/// Formulas with an accuracy that holds for exponents up to 1000.
 impl Formulas for KajiyaKay {
     type Constants<T: Real> = KajiyaKayConstants<T>;
     type Point<T: Real> = KajiyaKayReference<T>;
@@ -301,7 +304,8 @@ impl Formulas for KajiyaKay {
         constants.prepare(wo)
     }
 
-    /// Errors grow with the exponent of the bell: from 1e-12 of its peak down they are absolute.
+    /// Returns the slack of the highlight, whose errors grow with the exponent of the bell: from 1e-12 of its peak down they are
+    /// absolute.
     fn slack(params: &KajiyaKayParams, _wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
         let (desc, [_, v, w]) = (params.desc(), wi);
         let peak = 0.5 / (PI * cosine_power_integral(f64::from(desc.exponent) + 2.0));
@@ -312,7 +316,7 @@ impl Formulas for KajiyaKay {
 impl<const BY_CHANNEL: bool> Formulas for Chiang<BY_CHANNEL> {
     type Constants<T: Real> = ChiangConstants<T>;
     type Point<T: Real> = ChiangReference<T>;
-    // `5e-6 + 5e-7 / min(sqrt(v), s)`, the narrowest v and s those of roughnesses of .1.
+    // `5e-6 + 5e-7 / min(sqrt(v), s)`, where the narrowest v and s are those of roughnesses of .1.
     const ACCURACY: Accuracy = Accuracy {
         value: 2.6e-5,
         pdf: 2.6e-5,
@@ -361,7 +365,7 @@ impl<const BY_CHANNEL: bool> Formulas for Chiang<BY_CHANNEL> {
         constants.prepare(wo, h)
     }
 
-    /// Errors grow with the exponent of a lobe: from `exp(-12)` of its peak down they are absolute.
+    /// Returns the slack of the lobes, whose errors grow with their exponent: from `exp(-12)` of the peak down they are absolute.
     fn slack(params: &ChiangParams, _wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
         let (p, [_, v, w]) = (params.desc().map(f64::from), wi);
         let peak = 0.25 / ((TAU * p.variances()[Lobe::R]).sqrt() * p.scale());

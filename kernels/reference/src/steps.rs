@@ -3,15 +3,15 @@
 use crate::{LobeAt, Real, ReferenceSample};
 use hairis::{Lobe, PerLobe};
 
-/// A fixed direction: its inclination and azimuth.
+/// Inclination and azimuth of a fixed direction.
 pub(crate) struct Fixed<T> {
     pub(crate) sin_theta_o: T,
     pub(crate) cos_theta_o: T,
-    /// 0 along the fibre, whatever the signs of the zeros.
+    /// Azimuth, rad; 0 along the fibre, whatever the signs of the zeros.
     pub(crate) phi_o: T,
 }
 
-/// Inclination and azimuth of `wo`, of any length; zero counts as the normal plane.
+/// Computes inclination and azimuth of `wo`, of any length; zero counts as a direction in the normal plane.
 pub(crate) fn fixed<T: Real>(wo: [T; 3]) -> Fixed<T> {
     let zero = T::default();
     let across = wo[1].hypot(wo[2]);
@@ -33,7 +33,7 @@ pub(crate) fn fixed<T: Real>(wo: [T; 3]) -> Fixed<T> {
     }
 }
 
-/// Sine and cosine of the inclination of `wi`, whatever the rounding of its length.
+/// Computes sine and cosine of the inclination of `wi`, whatever the rounding of its length.
 pub(crate) fn inclination<T: Real>([u, v, w]: [T; 3]) -> [T; 2] {
     let across = v.hypot(w);
     let length = (u * u + across * across).sqrt();
@@ -44,14 +44,13 @@ pub(crate) fn inclination<T: Real>([u, v, w]: [T; 3]) -> [T; 2] {
     }
 }
 
-/// Directions closer than this to the fibre axis, in cosine of `theta_i`, have neither value nor density: section 3.3 of the
-/// paper.
+/// Cosine of `theta_i` below which a direction is too close to the fibre axis to have value or density: section 3.3 of the paper.
 pub(crate) const GRAZING: f64 = 1e-5;
 
-/// The parts over their sum; all 0 if that is 0.
+/// Divides the parts by their sum; all are 0 if the sum is 0.
 pub(crate) fn sum_to_one<T: Real>(parts: [T; 4]) -> PerLobe<T> {
     let zero = T::default();
-    // Over the largest first: the sum of large parts may overflow.
+    // Divided by the largest first, because the sum of large parts may overflow.
     let largest = parts.into_iter().fold(zero, T::max);
     if largest <= zero {
         return PerLobe([zero; 4]);
@@ -61,7 +60,7 @@ pub(crate) fn sum_to_one<T: Real>(parts: [T; 4]) -> PerLobe<T> {
     PerLobe(parts.map(|part| part / sum))
 }
 
-/// The share of each in the sum; 0 where there is none.
+/// Computes the share of each part in the sum; all are 0 if the sum is 0.
 pub(crate) fn shares<T: Real>(parts: &PerLobe<T>) -> PerLobe<T> {
     let total = parts
         .0
@@ -77,20 +76,21 @@ pub(crate) fn shares<T: Real>(parts: &PerLobe<T>) -> PerLobe<T> {
     PerLobe(parts.0.map(share))
 }
 
-/// The density of the mixture.
+/// Computes the density of the mixture.
 pub(crate) fn mix_pdfs<T: Real>(probabilities: &PerLobe<T>, pdfs: &PerLobe<T>) -> T {
     Lobe::ALL.into_iter().fold(T::default(), |sum, lobe| {
         sum + probabilities[lobe] * pdfs[lobe]
     })
 }
 
-/// The first lobe whose cumulative probability exceeds `xi`, and how far into its share `xi` is, in `[0, 1)`.
+/// Chooses the first lobe whose cumulative probability exceeds `xi`. Returns the lobe and how far into its share `xi` is, in
+/// `[0, 1)`.
 pub(crate) fn choose<T: Real>(probabilities: &PerLobe<T>, xi: T) -> Option<(Lobe, T)> {
     let zero = T::default();
     let (mut below, mut chosen) = (zero, None);
     for lobe in Lobe::ALL {
         let probability = probabilities[lobe];
-        // Rounding may leave the last sum below xi: a lobe without probability is not drawn even so.
+        // Rounding may leave the last sum below xi, but a lobe without probability is not drawn even then.
         if probability > zero {
             chosen = Some((lobe, (xi - below) / probability));
         }
@@ -103,7 +103,7 @@ pub(crate) fn choose<T: Real>(probabilities: &PerLobe<T>, xi: T) -> Option<(Lobe
     chosen.map(|(lobe, rest)| (lobe, rest.max(zero).min(largest)))
 }
 
-/// S, and the density of the mixture.
+/// Sums S and the density of the mixture over the lobes.
 pub(crate) fn mix<T: Real>(lobes: &PerLobe<LobeAt<T>>, probabilities: &PerLobe<T>) -> ([T; 3], T) {
     let zero = T::default();
     let (mut value, mut pdf) = ([zero; 3], zero);
@@ -117,7 +117,7 @@ pub(crate) fn mix<T: Real>(lobes: &PerLobe<LobeAt<T>>, probabilities: &PerLobe<T
     (value, pdf)
 }
 
-/// The sample of `lobe` at this inclination and azimuth, with the value and density of [`mix`].
+/// Makes the sample of `lobe` at this inclination and azimuth, with the value and density of [`mix`].
 pub(crate) fn finish_sample<T: Real>(
     lobe: Lobe,
     [sin_theta_i, cos_theta_i]: [T; 2],

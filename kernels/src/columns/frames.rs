@@ -1,4 +1,4 @@
-//! Frames of hits by column.
+//! Frames of many hits, stored by column.
 
 use super::{LengthError, check_length, check_lengths3};
 use crate::simd::columns::copy_few;
@@ -6,7 +6,7 @@ use crate::{FiberFrame8, Vec3x8};
 use glam::Vec3;
 use wide::f32x8;
 
-/// Frames of hits by column, one entry per hit: what a wavefront host has before it calls
+/// Frames of hits by column, one entry per hit: the data that a wavefront host has before it calls
 /// [`Material::eval_hits`](crate::Material::eval_hits).
 ///
 /// ```
@@ -20,19 +20,19 @@ use wide::f32x8;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct FrameColumns<'a> {
-    /// Along each fibre, from root to tip, unit: x, y, z in the world.
+    /// Directions along each fibre, from root to tip, unit: x, y, z in the world.
     pub tangent: [&'a [f32]; 3],
-    /// Outward normals, unit: azimuth 0 as [`FiberFrame8::from_tangents_normals`] has it. `None` is any azimuth, as
-    /// [`FiberFrame8::from_tangents`].
+    /// Outward normals, unit, which define azimuth 0 like [`FiberFrame8::from_tangents_normals`]. With `None` the azimuth is
+    /// arbitrary, like [`FiberFrame8::from_tangents`].
     pub normal: Option<[&'a [f32]; 3]>,
 }
 
 impl FrameColumns<'_> {
-    /// World to fibre: `out` are the components u, v, w.
+    /// Transforms vectors from the world to the fibres; `out` receives the components u, v, w.
     ///
     /// # Errors
     ///
-    /// If the columns differ in length; nothing is written then.
+    /// Returns an error, and writes nothing, if the columns differ in length.
     #[inline]
     pub fn to_local(&self, v: [&[f32]; 3], out: [&mut [f32]; 3]) -> Result<(), LengthError> {
         self.map(v, ["out.u", "out.v", "out.w"], out, |frames, v, _| {
@@ -41,11 +41,11 @@ impl FrameColumns<'_> {
         })
     }
 
-    /// Fibre to world: `out` are the components x, y, z.
+    /// Transforms vectors from the fibres to the world; `out` receives the components x, y, z.
     ///
     /// # Errors
     ///
-    /// If the columns differ in length; nothing is written then.
+    /// Returns an error, and writes nothing, if the columns differ in length.
     #[inline]
     pub fn to_world(&self, v: [&[f32]; 3], out: [&mut [f32]; 3]) -> Result<(), LengthError> {
         self.map(v, ["out.x", "out.y", "out.z"], out, |frames, v, _| {
@@ -54,11 +54,12 @@ impl FrameColumns<'_> {
         })
     }
 
-    /// Offsets across the fibres seen from `wo`, in the world: [`FiberFrame8::offset`]. 0 without normals.
+    /// Computes the offsets across the fibres viewed from `wo`, in the world, like [`FiberFrame8::offset`]. Without normals the
+    /// offsets are 0.
     ///
     /// # Errors
     ///
-    /// If the columns differ in length; nothing is written then.
+    /// Returns an error, and writes nothing, if the columns differ in length.
     #[inline]
     pub fn offset(&self, wo: [&[f32]; 3], h: &mut [f32]) -> Result<(), LengthError> {
         self.map(wo, ["h"], [h], |frames, wo, normal| {
@@ -66,7 +67,7 @@ impl FrameColumns<'_> {
         })
     }
 
-    /// Eight hits at a time. Lanes past the last hit are along x.
+    /// Calls `call` for eight hits at a time. In lanes past the last hit, every vector is along x.
     #[inline]
     fn map<const N: usize>(
         &self,
@@ -102,7 +103,7 @@ impl FrameColumns<'_> {
     }
 }
 
-/// Eight vectors from row `at` on.
+/// Reads eight vectors from row `at` on.
 #[inline]
 fn read(columns: [&[f32]; 3], at: usize) -> Vec3x8 {
     let mut lanes = Vec3::X.to_array().map(|x| [x; 8]);

@@ -1,16 +1,17 @@
-//! Rows brought together by the material of their hit.
+//! Grouping of rows by the material of their hit.
 
-/// Rows that are brought together at once: with half as many, six materials take 30% longer.
+/// Number of rows that are grouped at once; with half as many, six materials take 30% longer.
 const ROWS: usize = 256;
-/// The least count of rows of one material for which a call of its own is faster than a lane for each.
+/// Smallest number of rows of one material for which a call of its own is faster than one lane per row.
 const FEW: usize = 3;
 
-/// Calls `run` with the rows of one index at a time. With `mixed` above 1, up to that many rows of several indices come together
-/// where each has at most two.
+/// Calls `run` with the rows of one index at a time. If `mixed` is above 1, up to that many rows of several indices share a call,
+/// where each index has at most two rows.
 ///
-/// Rows are those of `index`; a column of `inputs` or `outputs` that is empty stays empty. Rows of one index in a row are passed on
-/// as they are. Others are copied in chunks of 256, by index, and their results copied back. Hits in any order on a few materials
-/// then take little longer than hits in the order of their materials. Takes 28 kB of stack for 10 inputs and 15 outputs.
+/// Rows are those of `index`; a column of `inputs` or `outputs` that is empty stays empty. Long runs of one index are passed on as
+/// they are. Other rows are copied in chunks of 256, by index, and their results copied back, so that hits in any order on a few
+/// materials take little longer than hits in the order of their materials. The call takes 28 kB of stack for 10 inputs and 15
+/// outputs.
 ///
 /// For hosts whose tables hold materials of several models: `run` finds the material of the index, and makes the call.
 ///
@@ -37,12 +38,12 @@ pub fn in_groups<const I: usize, const N: usize>(
         }
         return;
     }
-    // Not for calls on one material: to clear 28 kB takes as long as a hundred hits.
+    // Not for calls on one material, because clearing 28 kB takes as long as a hundred hits.
     let (mut from, mut to) = ([[0.0; ROWS]; I], [[0.0; ROWS]; N]);
     let mut at = 0;
     while let Some(rest) = index.get(at..).filter(|rest| !rest.is_empty()) {
         let alike = alike(rest);
-        // A run of half a chunk gains little by rows of its material further on.
+        // A run of half a chunk gains little from rows of its material further on.
         if alike >= ROWS / 2 || alike == rest.len() {
             let outputs = outputs.each_mut().map(|column| part_mut(column, at, alike));
             run(
@@ -82,7 +83,7 @@ pub fn in_groups<const I: usize, const N: usize>(
     }
 }
 
-/// Rows of a column; none where it is left out.
+/// Returns a range of rows of a column, or no rows if the column is left out.
 #[inline]
 fn part<T>(column: &[T], first: usize, count: usize) -> &[T] {
     column.get(first..first + count).unwrap_or_default()
@@ -93,14 +94,15 @@ fn part_mut(column: &mut [f32], first: usize, count: usize) -> &mut [f32] {
     column.get_mut(first..first + count).unwrap_or_default()
 }
 
-/// Number of rows that have the index of the first.
+/// Returns the number of rows, from the first on, that have the index of the first.
 #[inline]
 fn alike(index: &[u32]) -> usize {
     let is_first = |other: &&u32| index.first() == Some(*other);
     index.iter().take_while(is_first).count()
 }
 
-/// Number of rows, sorted by index, that one call computes: those of the first index, or up to `mixed` of indices with few.
+/// Returns the number of rows, sorted by index, that one call computes: the rows of the first index, or up to `mixed` rows of
+/// indices with few.
 #[inline]
 fn together(index: &[u32], mixed: usize) -> usize {
     let first = alike(index);
@@ -115,7 +117,7 @@ fn together(index: &[u32], mixed: usize) -> usize {
     count
 }
 
-/// The next rows of a call in groups of one index, in the order of their first rows.
+/// Order of the next rows of a call in groups of one index; groups are in the order of their first rows.
 struct Order {
     index: [u32; ROWS],
     /// Row of the call for each row of the order, below `ROWS`.
@@ -133,7 +135,7 @@ impl Order {
             places: [0; ROWS],
             count,
         };
-        // The group of each index, found by its hash: half of the slots stay empty, so that every search ends.
+        // The group of each index is found by its hash. Half of the slots stay empty, so that every search ends.
         let (mut slots, mut known) = ([u16::MAX; SLOTS], [0_u32; ROWS]);
         let (mut group_of, mut sizes, mut groups) = ([0_u16; ROWS], [0_u16; ROWS], 0_u16);
         for (index, of) in index.iter().zip(&mut group_of) {
@@ -154,7 +156,7 @@ impl Order {
             *of = group;
             sizes[usize::from(group) % ROWS] += 1;
         }
-        // Where the next row of each group goes.
+        // The position of the next row of each group.
         let mut next = 0;
         for size in &mut sizes {
             (*size, next) = (next, next + *size);
@@ -168,13 +170,13 @@ impl Order {
         order
     }
 
-    /// The indices of the rows.
+    /// Returns the indices of the rows, in this order.
     #[inline]
     fn rows(&self) -> &[u32] {
         part(&self.index, 0, self.count)
     }
 
-    /// Copies a column in the order of the rows. Returns how many numbers: none of a column that is left out.
+    /// Copies a column in this order. Returns the count of numbers copied, which is 0 for a column that is left out.
     #[inline]
     fn gather(&self, column: &[f32], to: &mut [f32; ROWS]) -> usize {
         let mut chunk = [0.0; ROWS];
@@ -187,7 +189,7 @@ impl Order {
         column.len()
     }
 
-    /// Copies results back.
+    /// Copies results back to the order of the call.
     #[inline]
     fn scatter(&self, from: &[f32; ROWS], column: &mut [f32]) {
         let mut chunk = [0.0; ROWS];

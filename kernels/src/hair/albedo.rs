@@ -8,13 +8,13 @@ use crate::model::math::{FRAC_PI_2_LOW, half_atan2, sin_cos_half_turn};
 use crate::simd::{Broadcast, Lanes, lanes3};
 use core::f32::consts::FRAC_PI_2;
 
-/// Nodes of an integral over `x`, the distance from the centre of a bell in widths: even in `u`, with `x = u / (1 - u^2)`, but
-/// for the grading towards both ends.
+/// Nodes of an integral over `x`, the distance from the centre of a bell in widths. The nodes are even in `u`, with
+/// `x = u / (1 - u^2)`, except for the grading towards both ends.
 ///
 /// A bell of any width is smooth over `u`, and so are the cosines beside it up to the ends.
 #[derive(Clone, Copy)]
 struct Nodes<L> {
-    /// `1 + u` of the first, and `1 - u` of the last: they keep their digits where they vanish.
+    /// `1 + u` of the first node, and `1 - u` of the last: they keep their digits where they vanish.
     above: L,
     below: L,
     span: L,
@@ -31,7 +31,7 @@ impl<L: Lanes> Nodes<L> {
         }
     }
 
-    /// `x` of a node, and its weight times `dx`.
+    /// Returns `x` of a node, and its weight times `dx`.
     #[inline(always)]
     fn at(&self, [node, rest, weight]: [f32; 3]) -> (L, L) {
         let c = L::splat;
@@ -46,7 +46,7 @@ impl<L: Lanes> Nodes<L> {
     }
 }
 
-/// `1 + u` and `1 - u` of `x = u / (1 - u^2)`.
+/// Returns `1 + u` and `1 - u` for `x = u / (1 - u^2)`.
 #[inline(always)]
 fn compress<L: Lanes>(x: L) -> [L; 2] {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
@@ -64,7 +64,7 @@ fn compress<L: Lanes>(x: L) -> [L; 2] {
     ]
 }
 
-/// Integral of a bell over `[lo, hi]`, in widths from its centre.
+/// Integrates a bell over `[lo, hi]`, in widths from its centre.
 #[inline]
 pub(super) fn bell_area<B: Bell, L: Lanes>(lo: L, hi: L) -> L {
     let (one, nodes) = (L::splat(1.0), Nodes::between(lo, hi));
@@ -76,7 +76,7 @@ pub(super) fn bell_area<B: Bell, L: Lanes>(lo: L, hi: L) -> L {
     sum
 }
 
-/// Directional albedo of each lobe, linear RGB; 0 where `wo` is no direction.
+/// Computes the directional albedo of each lobe, linear RGB; 0 if `wo` is not finite.
 #[inline(always)]
 pub(crate) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>) -> PerLobe<[L; 3]> {
     let hair = &view.lobes;
@@ -99,7 +99,7 @@ pub(crate) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>) -> 
 fn lobe<L: Lanes, C: Broadcast<L>>(view: &HairView<C>, l: usize, area: L, color: [L; 3]) -> [L; 3] {
     let hair = &view.lobes;
     let (zero, most) = (L::splat(0.0), L::splat(f32::MAX));
-    // The second operand wins over NaN.
+    // `max` returns its second operand for NaN.
     let albedo = (area * hair.strength[l].lanes()).max(zero);
     [
         (albedo * color[0]).min(most),
@@ -108,7 +108,7 @@ fn lobe<L: Lanes, C: Broadcast<L>>(view: &HairView<C>, l: usize, area: L, color:
     ]
 }
 
-/// Directional albedo of each channel, to within 2e-4.
+/// Computes the directional albedo of each channel, to within 2e-4.
 #[inline(always)]
 pub(super) fn channels<B: Bell, L: Lanes>(view: &HairView<L::Stored>) -> [L; 3] {
     let hair = &view.lobes;
@@ -132,7 +132,7 @@ pub(super) fn channels<B: Bell, L: Lanes>(view: &HairView<L::Stored>) -> [L; 3] 
     albedo
 }
 
-/// [`longitudinal`] of R, TT and TRT.
+/// Computes the [`longitudinal`] integrals of R, TT and TRT.
 #[inline(always)]
 fn inclinations<B: Bell, L: Lanes, C: Broadcast<L>, const N: usize>(
     view: &HairView<C>,
@@ -145,10 +145,10 @@ fn inclinations<B: Bell, L: Lanes, C: Broadcast<L>, const N: usize>(
     ]
 }
 
-/// Integral of `M cos^2 theta_i / cos^2 theta_d` over `theta_i`.
+/// Integrates `M cos^2 theta_i / cos^2 theta_d` over `theta_i`.
 ///
-/// Angles are distances in `theta_h` from the nearer pole, and cosines products of what does not cancel: no digit of a small one
-/// is lost.
+/// Angles are distances in `theta_h` from the nearer pole, and cosines are products of factors that do not cancel, so that no digit
+/// of a small cosine is lost.
 #[inline(always)]
 fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>, const N: usize>(
     view: &HairView<C>,

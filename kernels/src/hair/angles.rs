@@ -1,4 +1,4 @@
-//! Angles of a direction relative to the shading point, and the lobe terms there.
+//! Angles of a direction relative to the shading point, and the lobe terms at these angles.
 
 use super::{GRAZING, HairView};
 use crate::model::math::{atan_unit, half_angle, quotients};
@@ -6,7 +6,7 @@ use crate::model::{Bell, FourBells, TwoBells};
 use crate::simd::{Broadcast, Lanes, Vec3x, lanes3};
 use core::f32::consts::FRAC_PI_2;
 
-/// Angles of a direction relative to the shading point.
+/// Angles of `wi` relative to the shading point, with sines and cosines.
 #[derive(Clone, Copy)]
 pub(crate) struct Angles<L: Lanes> {
     /// Half of `theta_i`, plus [`HairView::quarter_o`].
@@ -17,7 +17,7 @@ pub(crate) struct Angles<L: Lanes> {
     pub(crate) inv_cos_theta_i: L,
     /// Half of `|phi|`, or of `pi - |phi|`: the smaller of both has digits where it vanishes.
     pub(super) half: L,
-    /// Mask of the lanes where it is half of `|phi|`.
+    /// Mask of the lanes where `half` is half of `|phi|`.
     pub(super) of_phi: L::Mask,
     /// `cos(phi / 2)`.
     pub(super) cos_half_phi: L,
@@ -25,20 +25,20 @@ pub(crate) struct Angles<L: Lanes> {
     pub(super) front: L::Mask,
 }
 
-/// Lobe terms at these angles.
+/// Lobe terms at the angles of a direction.
 #[derive(Clone, Copy)]
 pub(crate) struct LobeTerms<L> {
     /// `M N`, with unit peaks: no colour, no strength.
     pub(crate) value: [L; 4],
-    /// Products of Cauchy bells, the glints cut at `pi/2`: the published sampler's density but for the shading point's
-    /// constants, and for `1 / cos theta_i`.
+    /// Products of Cauchy bells, with the glints cut at `pi/2`: the density of the published sampler without the constants of the
+    /// shading point and without `1 / cos theta_i`.
     pub(super) density: [L; 4],
     /// `1 / cos^2 theta_d`.
     pub(crate) inv_cos_sq_theta_d: L,
 }
 
 impl<L: Lanes> Angles<L> {
-    /// The angles of `wi` relative to a shading point, and the mask of lanes where `wi` is a direction off the axis.
+    /// Computes the angles of `wi` relative to a shading point, and the mask of lanes where `wi` is a direction off the axis.
     #[inline(always)]
     pub(crate) fn from_direction<C: Broadcast<L>>(
         view: &HairView<C>,
@@ -46,8 +46,8 @@ impl<L: Lanes> Angles<L> {
     ) -> (Self, L::Mask) {
         L::stage("wi: inclination, and azimuth relative to wo");
         let c = L::splat;
-        // Alone: on one lane LLVM puts these numbers, of which the rest waits, into vectors with others by shuffles. With them
-        // evaluating the Gaussian model takes 6% to 7% more time, a hit 5% to 10% (AMD family 25 model 1). Measure again:
+        // Alone, because on one lane LLVM shuffles these numbers, for which the rest waits, into vectors with others. Evaluating the
+        // Gaussian model then takes 6% to 7% more time, and a hit 5% to 10% (AMD family 25 model 1). Measure again:
         // `entry time eval/eval_pdf/gaussian/scalar 1`, builds in turns.
         let plane_sq = wi.y.mul_add(wi.y, wi.z * wi.z).alone();
         let cos_theta_i = plane_sq.sqrt();
@@ -84,7 +84,7 @@ impl<L: Lanes> Angles<L> {
         (angles, sound)
     }
 
-    /// The lobe terms at these angles.
+    /// Computes the lobe terms at these angles.
     #[inline(always)]
     pub(crate) fn eval_lobes<B: Bell, C: Broadcast<L>>(&self, view: &HairView<C>) -> LobeTerms<L> {
         let c = L::splat;
@@ -92,7 +92,7 @@ impl<L: Lanes> Angles<L> {
         L::stage("distances from the centres of the lobes in widths, squared");
         let hair = &view.lobes;
         let plus_quarter = self.half_theta_i_plus_quarter;
-        // Alone: in vectors of them and numbers next to them in memory, squares that nobody uses overflow.
+        // Alone, because in vectors of them and numbers next to them in memory, unused squares overflow.
         let x_r = ((plus_quarter + view.shift[0].lanes()) * hair.inv_beta[0].lanes()).alone();
         let x_tt = ((plus_quarter + view.shift[1].lanes()) * hair.inv_beta[1].lanes()).alone();
         let x_trt = ((plus_quarter + view.shift[2].lanes()) * hair.inv_beta[2].lanes()).alone();
@@ -181,14 +181,14 @@ impl<L: Lanes> Angles<L> {
     }
 }
 
-/// `1 + x^2`, alone.
+/// Returns `1 + x^2`, computed alone.
 #[inline(always)]
 fn one_plus_square<L: Lanes>(x: L) -> L {
     x.mul_add(x, L::splat(1.0)).alone()
 }
 
 impl<L: Lanes> LobeTerms<L> {
-    /// S times `cos^2 theta_d`, linear RGB.
+    /// Returns S times `cos^2 theta_d`, linear RGB.
     #[inline(always)]
     pub(crate) fn sum_lobes<C: Broadcast<L>>(&self, view: &HairView<C>) -> [L; 3] {
         L::stage("sum of the lobes in their colours");

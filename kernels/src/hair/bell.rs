@@ -1,4 +1,4 @@
-//! The bell curves that the published model is built of: its extension point.
+//! Bell curves that the published model is built of: its extension point.
 
 use super::albedo::bell_area;
 use super::matched::MatchedBell;
@@ -6,11 +6,11 @@ use crate::model::math::gaussian;
 use crate::simd::Lanes;
 use crate::simd::pair::Pair;
 
-/// A bell of unit peak: every Gaussian of the published model, or what replaces it.
+/// Bell curve of unit peak, which takes the place of every Gaussian of the published model.
 ///
-/// Its arguments are `s = (x / width)^2`, the squared distance from its centre in widths, and the Cauchy value
-/// `1 / (1 + s)`, which the density of the published sampler needs anyway. It is written once over [`Lanes`]. For full
-/// speed mark all functions `#[inline(always)]` and pass no closures on.
+/// The arguments are `s = (x / width)^2`, the squared distance from the centre in widths, and the Cauchy value `1 / (1 + s)`, which
+/// the density of the published sampler needs anyway. A bell is written once over [`Lanes`]. For full speed mark all its functions
+/// `#[inline(always)]` and pass no closures on.
 ///
 /// ```
 /// use hairis::{HairParams, Material, Published};
@@ -31,19 +31,19 @@ use crate::simd::pair::Pair;
 /// assert!(hair.prepare(Vec3::Y).pdf(Vec3::Y) > 0.0);
 /// ```
 pub trait Bell: Copy {
-    /// The bell at squared distance `s` in widths; 1 at 0.
+    /// Evaluates the bell at the squared distance `s` in widths; the result is 1 at `s` 0.
     ///
     /// `cauchy` is `1 / (1 + s)`.
     fn one<L: Lanes>(s: L, cauchy: L) -> L;
 
-    /// The product of two bells.
+    /// Evaluates the product of two bells.
     #[inline(always)]
     fn two<L: Lanes>(at: TwoBells<L>) -> L {
         Self::one(at.s, at.cauchy_s) * Self::one(at.t, at.cauchy_t)
     }
 
-    /// The bells of the four lobes at one direction: [`one`](Self::one) of R, [`two`](Self::two) of TT, `one` of TRT, `two` of
-    /// the glints. Override it where the four together cost less than one after another.
+    /// Evaluates the bells of the four lobes at one direction: [`one`](Self::one) for R, [`two`](Self::two) for TT, `one` for TRT,
+    /// and `two` for the glints. Override it where the four together cost less than one after another.
     #[inline(always)]
     fn four<L: Lanes>(at: FourBells<L>) -> [L; 4] {
         [
@@ -54,7 +54,7 @@ pub trait Bell: Copy {
         ]
     }
 
-    /// Integral from `lo` to `hi`, in widths from the centre, for [`Single`](crate::model::Single).
+    /// Computes the integral from `lo` to `hi`, in widths from the centre, for [`Single`](crate::model::Single).
     ///
     /// Provided: a quadrature.
     #[doc(hidden)]
@@ -63,7 +63,7 @@ pub trait Bell: Copy {
         bell_area::<Self, L>(lo, hi)
     }
 
-    /// A factor on every width of the material, finite and at least 0.5; it is read once per material.
+    /// Returns a factor on every width of the material, finite and at least 0.5, which is read once per material.
     #[inline]
     fn width_factor(&self) -> f32 {
         1.0
@@ -94,7 +94,7 @@ pub struct FourBells<L> {
     pub cauchy_r: L,
     /// Inclination and azimuth of TT.
     pub tt: TwoBells<L>,
-    /// As `s_r`, of TRT.
+    /// Squared distance of the inclination from the centre of TRT, in widths.
     pub s_trt: L,
     /// `1 / (1 + s_trt)`.
     pub cauchy_trt: L,
@@ -102,7 +102,7 @@ pub struct FourBells<L> {
     pub glint: TwoBells<L>,
 }
 
-/// The bell of the published model: `exp(-s/2)`, a Gaussian whose deviation is the width.
+/// Bell of the published model: `exp(-s/2)`, a Gaussian whose standard deviation is the width.
 ///
 /// - Source: Ou et al. 2012, table 2; unit peak by ERRATA E4.
 /// - Accuracy: exactly 0 from about `2^-115` down, see [`crate::model::math::gaussian`].
@@ -115,14 +115,14 @@ impl Bell for Gaussian {
         gaussian(s)
     }
 
-    // Two Gaussians are one.
+    // The product of two Gaussians is one Gaussian.
     #[inline(always)]
     fn two<L: Lanes>(at: TwoBells<L>) -> L {
         gaussian(at.s + at.t)
     }
 
-    // Interleaved in pairs: each constant is read once for two, and no dependency chain waits alone. Four at a time would need more
-    // registers than AVX2 has.
+    // Interleaved in pairs, so that each constant is read once for two bells, and no dependency chain waits alone. Four bells at a
+    // time would need more registers than AVX2 has.
     #[inline(always)]
     fn four<L: Lanes>(at: FourBells<L>) -> [L; 4] {
         let Pair(r, tt) = gaussian(Pair(at.s_r, at.tt.s + at.tt.t));

@@ -1,7 +1,7 @@
-//! Energy conservation of the published model: each channel divided by its albedo where that is above 1.
+//! Energy conservation of the published model: each channel is divided by its albedo where the albedo is above 1.
 //!
-//! The albedo of a material depends on the inclination of `wo` alone. [`AlbedoFit`] holds what it costs the colours as polynomials;
-//! where they are not accurate enough, every shading point integrates the lobes.
+//! The albedo of a material depends on the inclination of `wo` alone. [`AlbedoFit`] holds the resulting factor on the colours as
+//! polynomials; where these are not accurate enough, every shading point integrates the lobes.
 
 mod fit;
 
@@ -11,26 +11,26 @@ use crate::model::Bell;
 use crate::simd::table::{ENTRIES, NUMBERS, Table};
 use crate::simd::{Broadcast, Choice, Lanes, Scalar, f32x8, lanes3, store3};
 
-/// Pieces on each side of the normal plane: the look-up has an entry for each of both sides.
+/// Number of pieces on each side of the normal plane; the table has entries for both sides.
 const PIECES: usize = ENTRIES / 2;
-/// Coefficients of a piece in each channel.
+/// Number of coefficients of a piece in each channel.
 const POWERS: usize = NUMBERS / 3;
-// As `fitted` has them in its formulas.
+// The formulas of `fitted` rely on these numbers.
 const _: () = assert!(
     PIECES == 4 && POWERS == 5 && NUMBERS == 15,
     "the pieces fill a table"
 );
 
-/// `1 / albedo - 1` of each channel as a function of the inclination of `wo`: on each side of the normal plane, the lower one
-/// first, four polynomials of degree 4 in a warped inclination.
+/// Fit of `1 / albedo - 1` of each channel as a function of the inclination of `wo`: on each side of the normal plane, the lower
+/// side first, four polynomials of degree 4 in a warped inclination.
 ///
-/// With `x = sqrt(cos / (1 + |sin|))` of the inclination the pieces have equal lengths in `v = (1 + near) x / (x + near)`.
-/// Next to a pole the albedo is `A + B log x` of smooth `A` and `B`, the latter of order `x^2`: the root makes the logarithm
-/// harmless, and `near` is the scale of narrow lobes. Where the albedo is below 1 the polynomials go on smoothly above 0.
+/// With `x = sqrt(cos / (1 + |sin|))` of the inclination the pieces have equal lengths in `v = (1 + near) x / (x + near)`. Next to a
+/// pole the albedo is `A + B log x` of smooth `A` and `B`, the latter of order `x^2`: the root makes the logarithm harmless, and
+/// `near` is the scale of narrow lobes. Where the albedo is below 1 the polynomials continue smoothly above 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AlbedoFit<C: Scalar> {
     pub(in crate::hair) warp: Warp<C>,
-    /// Coefficients of each piece: of the three channels, from the highest power down.
+    /// Coefficients of each piece for the three channels, from the highest power down.
     pieces: Table<C>,
 }
 
@@ -42,14 +42,14 @@ crate::simd::lane_struct! {
 crate::simd::lane_struct! {
     /// Constants of a fit besides its polynomials.
     pub(in crate::hair) struct Warp {
-        /// Scale of the warp on either side.
+        /// Scale of the warp on either side of the normal plane.
         pub(in crate::hair) near: [C; 2],
-        /// 1 where the polynomials are not accurate enough and all 0, which changes nothing, else 0.
+        /// 1 where the polynomials are not accurate enough, else 0. The polynomials are then all 0, which changes no colour.
         pub(in crate::hair) refused: C,
     }
 }
 
-/// The view terms with each channel of the lobes divided by its albedo where that is above 1, from the fit.
+/// Returns the view terms with each channel of the lobes divided by its albedo where the albedo is above 1, from the fit.
 #[inline(always)]
 pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
     fit: &AlbedoFit<C>,
@@ -60,13 +60,14 @@ pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
     let (sin, cos) = (view.half_sin_theta_o.lanes(), view.half_cos_theta_o.lanes());
     let upper = c(0.0).lt(sin);
     let near = L::select(upper, fit.warp.near[1].lanes(), fit.warp.near[0].lanes());
-    // `x` is `root / below`. The second operand of `min` wins over NaN.
+    // `x` is `root / below`. For NaN `min` returns its second operand.
     let below = sin.abs() + 0.5;
     let root = (cos * below).sqrt();
     let v = L::quotient(root * (near + 1.0), near.mul_add(below, root)).min(one);
     let piece = L::Index::search(v, [c(0.25), c(0.5), c(0.75)], PIECES - 1);
     let t = v.mul_add(c(8.0), piece.to_number().mul_add(c(-2.0), c(-1.0)));
-    // Not a closure: those over lanes may become calls, out of functions of target features, where compilers save space.
+    // Not a closure, because closures over lanes may become calls, out of functions of target features, where compilers optimise for
+    // size.
     macro_rules! four {
         ($four:literal) => {
             C::look_up_four(&fit.pieces, piece, upper, $four)
@@ -86,7 +87,7 @@ pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
     let [m, n, o, _] = four!(3);
     horner! { 0 m; 1 n; 2 o; }
     let by = [by[0].min(c(0.0)), by[1].min(c(0.0)), by[2].min(c(0.0))];
-    // Either sum loses digits next to -1, where no fit is: see `LEAST`.
+    // Either sum loses digits next to -1, where no fit exists: see `LEAST`.
     if L::FUSES {
         return scaled::<L, true>(view, by);
     }
@@ -94,8 +95,8 @@ pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
     scaled::<L, false>(view, by)
 }
 
-/// The view terms with each channel of the lobes divided by its albedo where that is above 1, to within 2e-4; in the lanes of
-/// the mask.
+/// Returns the view terms with each channel of the lobes divided by its albedo where the albedo is above 1, to within 2e-4, in the
+/// lanes of the mask.
 #[inline(always)]
 pub(super) fn integrated<B: Bell, L: Lanes>(
     view: &HairView<L::Stored>,
@@ -105,7 +106,7 @@ pub(super) fn integrated<B: Bell, L: Lanes>(
     let mut by = channels::<B, L>(view);
     let mut channel = 0;
     while channel < 3 {
-        // The second operand wins over NaN: the albedo towards a wo that is no direction.
+        // `max` returns its second operand for NaN, which is the albedo towards a wo that is no direction.
         let albedo = L::keep(lanes, by[channel].min(most)).max(one);
         by[channel] = L::quotient(one, albedo);
         channel += 1;
@@ -113,7 +114,7 @@ pub(super) fn integrated<B: Bell, L: Lanes>(
     scaled::<L, false>(view, by)
 }
 
-/// The view terms with each colour multiplied by the number of its channel; with `ADD`, by 1 and that number.
+/// Returns the view terms with each colour multiplied by the number of its channel, or with `ADD` by 1 plus that number.
 #[inline(always)]
 fn scaled<L: Lanes, const ADD: bool>(
     view: &HairView<L::Stored>,

@@ -10,11 +10,11 @@ use crate::simd::{Broadcast, Lanes, Vec3x, lanes4, store4};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 crate::simd::lane_struct! {
-    /// The published sampler's constants of a material; arrays of two are TT and the glints.
+    /// Constants of the published sampler per material; arrays of two hold TT and the glints.
     pub(super) struct PublishedConstants {
-        /// The azimuth's truncated Cauchy on one side: tangent of the middle of its angles.
+        /// Truncated Cauchy of the azimuth on one side: tangent of the middle of its angles.
         pub(in crate::hair) azimuth_middle: [C; 2],
-        /// Angle from end to end, rad; below 0 for TT, whose cdf runs towards its centre.
+        /// Angle from end to end, rad; negative for TT, whose cdf runs towards its centre.
         pub(in crate::hair) azimuth_span: [C; 2],
         /// Normalisation of the azimuthal density, per rad.
         pub(in crate::hair) azimuth_density: [C; 2],
@@ -26,38 +26,38 @@ crate::simd::lane_struct! {
 }
 
 crate::simd::lane_struct! {
-    /// The constants of a material of the published model.
+    /// Constants of a material of the published model.
     pub struct PublishedMaterial {
-        /// Its lobes.
+        /// Lobes of the material.
         pub(in crate::hair) lobes: HairLobes<C>,
-        /// The sampler's constants of these lobes.
+        /// Constants of the sampler of these lobes.
         pub(in crate::hair) sampler: PublishedConstants<C>,
     }
 }
 
 crate::simd::lane_struct! {
-    /// The constants of a shading point of the published model: those of its material, and those of `wo`.
+    /// Constants of a shading point of the published model: those of its material, and those of `wo`.
     pub struct PublishedPrepared {
-        /// The lobes as seen from `wo`.
+        /// Lobes as viewed from `wo`.
         pub(in crate::hair) view: HairView<C>,
-        /// The inclination's truncated Cauchy: tangent of the middle of its angles.
+        /// Truncated Cauchy of the inclination: tangent of the middle of its angles.
         pub(in crate::hair) inclination_middle: [C; 4],
         /// Angle from end to end (A - B in the paper), rad.
         pub(in crate::hair) inclination_span: [C; 4],
-        /// Density of each lobe but for its shape and for `1 / cos theta_i`.
+        /// Density of each lobe without its shape and without `1 / cos theta_i`.
         pub(in crate::hair) density: [C; 4],
         /// Density times the probability of the lobe.
         pub(in crate::hair) weight: [C; 4],
-        /// The constants of the material.
+        /// Constants of the material's sampler.
         pub(in crate::hair) sampler: PublishedConstants<C>,
     }
 }
 
-/// The probability of each lobe from its energy, where the next one begins, and one over the sum of the energies. An energy
-/// is 0 or no less than 1e-36.
+/// Computes the probability of each lobe from its energy, the start of the next lobe, and the reciprocal of the sum of the energies.
+/// An energy is 0 or at least 1e-36.
 ///
-/// The last lobe with any energy reaches to 2: a rounded sum never lets `xi_lobe` fall through to a lobe without.
-/// Without any energy all probabilities are 0, and so is the last number.
+/// The last lobe with any energy reaches to 2, so that a rounded sum never selects a lobe without energy. If no lobe has any energy,
+/// all probabilities and the last number are 0.
 #[inline(always)]
 pub(crate) fn selection<L: Lanes>(energy: [L; 4]) -> ([L; 4], [L; 3], L) {
     let c = L::splat;
@@ -76,7 +76,7 @@ pub(crate) fn selection<L: Lanes>(energy: [L; 4]) -> ([L; 4], [L; 3], L) {
 }
 
 impl<L: Lanes<Stored = L>> PublishedMaterial<L> {
-    /// The material of a description, whose ranges are those of checked parameters.
+    /// Computes the material of a description, whose ranges are those of checked parameters.
     #[inline]
     #[must_use]
     pub(super) fn of<B: Bell, W: Precision<Lane = L>>(bell: B, d: &HairDesc<L>) -> Self {
@@ -103,12 +103,12 @@ impl<L: Lanes<Stored = L>> PublishedMaterial<L> {
     }
 }
 
-/// The least share of the largest energy that a lobe has if it has any: alone, it is still drawn.
+/// Least share of the largest energy for a lobe that has any energy, so that it is still drawn when it is alone.
 const LEAST_SHARE: f64 = 1e-30;
 
-/// Energy of each lobe as section 3.2.3 of the paper estimates it, to the scale of the largest.
+/// Computes the energy of each lobe as section 3.2.3 of the paper estimates it, to the scale of the largest energy.
 ///
-/// The product of two of the largest legal intensities overflows a float.
+/// Scaled, because the product of two of the largest legal intensities overflows a float.
 #[inline]
 fn energies<W: Precision>(
     beta: [W::Lane; 4],
@@ -140,7 +140,7 @@ fn energies<W: Precision>(
     ]
 }
 
-/// Truncated Cauchy of a lobe's inclination: the ends are those of all lobes, but for the shift.
+/// Makes the truncated Cauchy of a lobe's inclination; except for the shift, its ends are the same for all lobes.
 #[inline(always)]
 fn inclination<L: Lanes, C: Broadcast<L>>(
     [lo, hi]: [L; 2],
@@ -150,7 +150,7 @@ fn inclination<L: Lanes, C: Broadcast<L>>(
     TruncatedCauchy::new(lo + shift, hi + shift, beta.lanes())
 }
 
-/// The shading point of a material seen from `wo`.
+/// Computes the shading point of a material viewed from `wo`.
 #[inline(always)]
 pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     m: &PublishedMaterial<C>,
@@ -200,7 +200,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
 }
 
 impl<C: Lanes> PublishedPrepared<C> {
-    /// The shading point with only some of its lobes.
+    /// Returns the shading point with only some of its lobes.
     #[inline(always)]
     pub(super) fn restrict(&self, lobes: LobeMask) -> Self {
         let (p, bounds, _) = selection(times(self.sampler.selection, lobes.factors()));

@@ -1,6 +1,6 @@
-//! Quadrature on `[0, 1]`.
+//! Quadrature rules on `[0, 1]`.
 
-/// Nodes and weights of the 32-point rule: exact for polynomials up to degree 63.
+/// Nodes and weights on `[0, 1]` of the 32-point Gauss-Legendre rule, exact for polynomials up to degree 63.
 pub const GAUSS_LEGENDRE_32: [(f32, f32); 32] = [
     (0.00136806907526, 0.00350930500474),
     (0.00719424422737, 0.00813719736545),
@@ -36,13 +36,13 @@ pub const GAUSS_LEGENDRE_32: [(f32, f32); 32] = [
     (0.998631930925, 0.00350930500474),
 ];
 
-/// A rule whose nodes crowd towards both ends, as `v^5 / (v^5 + (1 - v)^5)` does for even `v`: each node, 1 less it, and its
-/// weight.
+/// Rule whose nodes crowd towards both ends, as `v^5 / (v^5 + (1 - v)^5)` does for even `v`. Each entry holds the node, 1 less the
+/// node, and its weight.
 ///
-/// For integrands that change on any scale next to an end: the nodes next to it are 2e-11 away.
+/// For integrands that change on any scale next to an end: the nodes next to an end are 2e-11 away from it.
 pub(crate) const GRADED: [[f32; 3]; 72] = graded();
 
-/// Rule with two thirds of the nodes: a digit less.
+/// Rule with two thirds of the nodes of [`GRADED`], which has a digit less.
 pub(crate) const COARSE: [[f32; 3]; 48] = graded();
 
 #[expect(

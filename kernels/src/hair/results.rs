@@ -1,21 +1,21 @@
-//! Results for a direction and for a sample, from the lobe terms and the density.
+//! Results for a direction and for a sample, computed from the lobe terms and the density.
 
 use super::{Angles, GRAZING, HairView, LobeTerms};
 use crate::PerLobe;
 use crate::model::{Eval, LobeEval, SampleLanes};
 use crate::simd::{Broadcast, Choice, Lanes, Vec3x, lanes3};
 
-/// The density below which a sample is discarded: next to denormals its weight would have no digits.
+/// Density below which a sample is discarded, because close to denormals its weight would have no digits.
 const LEAST_DENSITY: f32 = 1e-30;
 
-/// The largest result where a lane is sound, 0 where it is not. `x.min(limit)` then is 0 on an unsound lane whatever
-/// `x` is, NaN included, and finite on every other.
+/// Returns the largest result where a lane is sound, and 0 where it is not. On an unsound lane `x.min(limit)` is then 0 whatever `x`
+/// is, NaN included, and on every other lane it is finite.
 #[inline(always)]
 fn limit<L: Lanes>(sound: L::Mask) -> L {
     L::keep(sound, L::splat(f32::MAX))
 }
 
-/// `x` times `by`, at most `limit`.
+/// Multiplies `x` by `by`, and clamps the result to at most `limit`.
 #[inline(always)]
 fn scale3<L: Lanes>(x: [L; 3], by: L, limit: L) -> [L; 3] {
     [
@@ -25,7 +25,7 @@ fn scale3<L: Lanes>(x: [L; 3], by: L, limit: L) -> [L; 3] {
     ]
 }
 
-/// The density of a mixture of lobes, from the shape of each lobe's density and its weight.
+/// Computes the density of a mixture of lobes, from the shape of each lobe's density and its weight.
 #[inline(always)]
 pub(crate) fn mix_densities<L: Lanes, C: Broadcast<L>>(lobes: [L; 4], weight: &[C; 4]) -> L {
     L::stage("density of the mixture of lobes");
@@ -34,7 +34,7 @@ pub(crate) fn mix_densities<L: Lanes, C: Broadcast<L>>(lobes: [L; 4], weight: &[
     lobes[0].mul_add(weight[0].lanes(), d)
 }
 
-/// Value and density at these angles, of the mixture's `density` times `cos theta_i`.
+/// Computes value and density at these angles; `density` is that of the mixture times `cos theta_i`.
 #[inline(always)]
 pub(crate) fn finish_eval<L: Lanes, C: Broadcast<L>>(
     view: &HairView<C>,
@@ -52,7 +52,7 @@ pub(crate) fn finish_eval<L: Lanes, C: Broadcast<L>>(
     }
 }
 
-/// Each lobe at these angles, of its own `density` times `cos theta_i`.
+/// Computes each lobe at these angles; `density` is that of each lobe times `cos theta_i`.
 #[inline(always)]
 pub(crate) fn finish_lobes<L: Lanes, C: Broadcast<L>>(
     view: &HairView<C>,
@@ -81,7 +81,7 @@ pub(crate) fn finish_lobes<L: Lanes, C: Broadcast<L>>(
     PerLobe(lobes)
 }
 
-/// The sample `wi` of the lobe `choice`, of the mixture's `density` times `cos theta_i`.
+/// Computes the sample `wi` of the lobe `choice`; `density` is that of the mixture times `cos theta_i`.
 #[inline(always)]
 pub(crate) fn finish_sample<L: Lanes, C: Broadcast<L>>(
     view: &HairView<C>,

@@ -1,4 +1,4 @@
-//! The published sampler: a lobe by its energy, then inclination and azimuth by inversion (section 3.2 of the paper).
+//! The published sampler: chooses a lobe by its energy, then inclination and azimuth by inversion (section 3.2 of the paper).
 
 use super::{Angles, HairView, PublishedPrepared};
 use crate::hair::truncated::TruncatedCauchy;
@@ -7,7 +7,7 @@ use crate::simd::pair::Pair;
 use crate::simd::{Broadcast, Choice, Lanes, Vec3x, lanes3};
 use core::f32::consts::FRAC_PI_4;
 
-/// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its angles.
+/// Draws a direction for `xi = [lobe, theta, phi]`. Returns the direction, its lobe, and its angles.
 #[inline(always)]
 pub(super) fn draw<L: Lanes, C: Broadcast<L>>(
     prepared: &PublishedPrepared<C>,
@@ -18,7 +18,7 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(
     let (view, hair, sampler) = (&prepared.view, &prepared.view.lobes, &prepared.sampler);
     L::stage("lobe that xi.x selects");
     let choice = L::Index::search(xi[0], lanes3(&sampler.bounds), 3);
-    // The second operand wins over NaN: that of either number stays, and the sample has no
+    // `min` and `max` return their second operand for NaN, so that the NaN of either number stays and the sample has no
     // inclination.
     let along = zero.max(one.min(xi[1].min(xi[0] + xi[1])));
 
@@ -46,12 +46,12 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(
     (wi, choice, angles)
 }
 
-/// The number for the azimuth, folded about its middle.
+/// Uniform number for the azimuth, folded about its middle.
 #[derive(Clone, Copy)]
 pub(crate) struct FoldedXi<L> {
-    /// Its sign is the side.
+    /// Number whose sign is the side.
     side: L,
-    /// Share of a side, from the middle of `xi_phi`.
+    /// Share of one side, measured from the middle of `xi_phi`.
     pub(crate) across: L,
 }
 
@@ -67,15 +67,15 @@ impl<L: Lanes> FoldedXi<L> {
     }
 }
 
-/// Far below the cosine of any kept sample. Its reciprocal is finite, and so are products with it.
+/// Least cosine of an inclination, far below that of any kept sample. Its reciprocal is finite, and so are products with it.
 const LEAST_COSINE: f32 = 1e-20;
 
-/// The direction at an inclination and at an azimuth, and its angles. Angles that keep their digits in the direction are reused, not
-/// recomputed from it.
+/// Computes the direction at an inclination and an azimuth, and its angles. Angles that keep their digits in the direction are
+/// reused, not recomputed from it.
 ///
-/// `from_quarter` is half of `theta_i` plus `quarter_o`. The azimuth is on the side of `folded`. `psi` is half of `|phi|` for the glints and half of `pi - |phi|` for TT; R and TRT-g
-/// take it from `folded` alone. Where bells are narrow, rounding may take it a little out of `[0, pi/2]`: the cosine is cut at one
-/// end, and `rotation` turns it back at the other.
+/// `from_quarter` is half of `theta_i` plus `quarter_o`. The azimuth is on the side of `folded`. `psi` is half of `|phi|` for the
+/// glints and half of `pi - |phi|` for TT; R and TRT-g compute it from `folded` alone. For narrow bells rounding may move `psi` a
+/// little out of `[0, pi/2]`: the cosine is cut at one end, and `rotation` turns the angle back at the other.
 #[inline(always)]
 pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     view: &HairView<C>,

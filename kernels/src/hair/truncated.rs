@@ -1,16 +1,16 @@
-//! The Cauchy distribution cut to an interval: the published sampler's inclination, TT azimuth and glint azimuth.
+//! Cauchy distribution cut to an interval: the inclination, the azimuth of TT and that of the glints in the published sampler.
 
 use crate::model::math::{atan2_upper, tan_half_turn};
 use crate::simd::Lanes;
 
-/// A Cauchy distribution of width 1 centred on 0 and cut to `[lo, hi]`, as the angles of its ends: with
-/// `x = tan y`, `y` is uniform on an interval of length `span` about `mid`.
+/// Cauchy distribution of width 1 centred on 0 and cut to `[lo, hi]`, as the angles of its ends: with `x = tan y`, `y` is uniform on
+/// an interval of length `span` about `mid`.
 ///
 /// - Source: Ou et al. 2012, appendices A, C and D, whose `A` and `B` are `mid + span/2` and `mid - span/2`.
 /// - Density: `1 / (span (1 + x^2))` on the interval, per unit of `x` (per width).
 ///
-/// The angle between the ends is formed without their difference, and `x` by rotating from the middle: both keep
-/// their digits where the interval lies far from the centre, as it does for a narrow lobe shifted past the pole.
+/// The angle between the ends is computed without their difference, and `x` by rotating from the middle. Both thus keep their digits
+/// where the interval lies far from the centre, as it does for a narrow lobe shifted past the pole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TruncatedCauchy<L> {
     /// Tangent of the middle angle.
@@ -19,7 +19,7 @@ pub(crate) struct TruncatedCauchy<L> {
 }
 
 impl<L: Lanes> TruncatedCauchy<L> {
-    /// The distribution on `[lo, hi]`, in the units of `width`.
+    /// Makes the distribution on `[lo, hi]`, in the units of `width`.
     #[inline(always)]
     pub(crate) fn new(lo: L, hi: L, width: L) -> Self {
         let width_sq = width * width;
@@ -39,7 +39,7 @@ impl<L: Lanes> TruncatedCauchy<L> {
         }
     }
 
-    /// The value at cdf `1/2 + from_middle`, in widths.
+    /// Returns the value at cdf `1/2 + from_middle`, in widths.
     ///
     /// The ends of every interval of the models are less than `1e5` widths from the centre, so that the denominator
     /// stays further above 0 than it is rounded.

@@ -1,4 +1,4 @@
-//! Lobes of a material, and the view terms of a shading point: shared by all samplers of the published model.
+//! Lobes of a material, and the view terms of a shading point, which all samplers of the published model share.
 
 use super::albedo::bell_area;
 use crate::LobeMask;
@@ -10,13 +10,14 @@ use crate::simd::{Broadcast, Lanes, Vec3x, lanes3, store3, store4};
 use core::f32::consts::PI;
 
 crate::simd::lane_struct! {
-    /// The lobes of a material: the constants of its value, which every sampler reads.
+    /// Lobes of a material: the constants of its value, which every sampler reads.
     ///
-    /// Arrays of two are TT and the glints, of three R, TT, TRT; arrays of four are in the order of [`Lobe`](crate::Lobe).
+    /// Arrays of two hold TT and the glints, arrays of three R, TT and TRT; arrays of four are in the order of
+    /// [`Lobe`](crate::Lobe).
     pub(crate) struct HairLobes {
         /// Longitudinal shift, rad.
         pub(in crate::hair) alpha: [C; 3],
-        /// Longitudinal width, rad; the glints share TRT's.
+        /// Longitudinal width, rad; the glints share that of TRT.
         pub(in crate::hair) beta: [C; 4],
         /// `1 / beta`.
         pub(in crate::hair) inv_beta: [C; 3],
@@ -26,18 +27,17 @@ crate::simd::lane_struct! {
         pub(in crate::hair) inv_half_gamma: [C; 2],
         /// Half of the angle between a glint and `wo`, rad.
         pub(in crate::hair) half_phi_g: C,
-        /// `pi/2` less that.
+        /// `pi/2` less `half_phi_g`.
         pub(in crate::hair) half_back_g: C,
         /// Integral of the azimuthal term over the circle, rad.
         pub(in crate::hair) azimuth_area: [C; 2],
         /// Colour of R, linear RGB.
         pub(in crate::hair) color_r: [C; 3],
-        /// Colour of TT.
+        /// Colour of TT, linear RGB.
         pub(in crate::hair) color_tt: [C; 3],
-        /// Colour of TRT and the glints.
+        /// Colour of TRT and the glints, linear RGB.
         pub(in crate::hair) color_trt: [C; 3],
-        /// Factor on each lobe that is no colour: 1, and the strength of the glints (up to 1e6; its excess is in the
-        /// colour of TRT).
+        /// Factor on each lobe beside its colour: 1, and the strength of the glints (up to 1e6; the colour of TRT holds the excess).
         pub(in crate::hair) strength: [C; 4],
     }
 }
@@ -47,24 +47,24 @@ crate::simd::lane_struct! {
     pub(crate) struct HairView {
         /// Half the sine of `theta_o`.
         pub(in crate::hair) half_sin_theta_o: C,
-        /// Half its cosine.
+        /// Half the cosine of `theta_o`.
         pub(in crate::hair) half_cos_theta_o: C,
-        /// The part of `wo` in the normal plane, with the digits it was given: v and w, and its length.
+        /// Part of `wo` in the normal plane, with the digits it was given: v and w, and its length.
         pub(in crate::hair) plane_o: [C; 3],
-        /// One over that length.
+        /// Reciprocal of that length.
         pub(in crate::hair) inv_plane_o: C,
-        /// `pi/4` with the sign of `theta_o` where that is next to a pole, else 0.
+        /// `pi/4` with the sign of `theta_o` where `theta_o` is next to a pole, else 0.
         pub(in crate::hair) quarter_o: C,
-        /// `theta_o / 2 - alpha` less that: small, and with more digits than the sum. Both added to `theta_i / 2` are
-        /// `theta_h - alpha`.
+        /// `theta_o / 2 - alpha` less `quarter_o`: small, and with more digits than the sum. `shift` and `quarter_o` added to
+        /// `theta_i / 2` are `theta_h - alpha`.
         pub(in crate::hair) shift: [C; 4],
-        /// The lobes of the material.
+        /// Lobes of the material.
         pub(in crate::hair) lobes: HairLobes<C>,
     }
 }
 
 impl<L: Lanes<Stored = L>> HairLobes<L> {
-    /// The lobes of a description, whose ranges are those of checked parameters.
+    /// Computes the lobes of a description, whose ranges are those of checked parameters.
     #[inline]
     #[must_use]
     pub(crate) fn of<B: Bell, W: Precision<Lane = L>>(bell: B, d: &HairDesc<L>) -> Self {
@@ -115,11 +115,11 @@ impl<L: Lanes<Stored = L>> HairLobes<L> {
     }
 }
 
-/// Least share of the brightest lobe that [`intensities`] tells from others in single precision.
+/// Least share of the brightest lobe that [`intensities`] distinguishes from 0 in single precision.
 const LEAST_SHARE: f32 = 1e-30;
 
-/// Intensities of R, TT and TRT, and the factor of each lobe on its own, of which the glints have that of TRT. The products of both
-/// are on a common scale.
+/// Computes the intensities of R, TT and TRT, and a factor for each lobe; the glints have the intensities of TRT. The products of
+/// both are on a common scale.
 #[inline]
 pub(crate) fn intensities<W: Precision>(d: &HairDesc<W::Lane>) -> ([[W; 3]; 3], [W; 4]) {
     let c = <W::Lane as Lanes>::splat;
@@ -155,7 +155,7 @@ pub(crate) fn intensities<W: Precision>(d: &HairDesc<W::Lane>) -> ([[W; 3]; 3], 
     )
 }
 
-/// The lobes of a material seen from `wo`.
+/// Computes the view terms of a material viewed from `wo`.
 #[inline(always)]
 pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
     lobes: &HairLobes<C>,
@@ -177,7 +177,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
     let z = wo.z * by;
     let plane_sq = y.mul_add(y, z * z);
     let len = x.mul_add(x, plane_sq).sqrt();
-    // NaN if any component is, as the second operand wins: no direction is sound then
+    // NaN if any component is, because `min` returns its second operand for NaN: no direction is sound then
     // (`Angles::from_direction`), and no sample has an inclination.
     let plane = plane_sq.sqrt().min(len);
     // On the axis the azimuth is 0 by convention, and so it is where `plane_sq` is next to denormals and has no digits.
@@ -211,7 +211,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
 }
 
 impl<C: Lanes> HairView<C> {
-    /// The shading point with only some of its lobes.
+    /// Returns the shading point with only some of its lobes.
     #[inline(always)]
     pub(crate) fn restrict(&self, lobes: LobeMask) -> Self {
         let factor = lobes.factors::<C>();

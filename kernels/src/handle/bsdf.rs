@@ -1,4 +1,4 @@
-//! BSDFs: materials at hits.
+//! BSDFs: materials at hits, which evaluate and sample directions.
 
 use super::kernels::{Albedo, EvalPdf, Lobes, SampleWi};
 use super::{handle_impls, level_methods};
@@ -6,14 +6,13 @@ use crate::model::{LobeEval, LobeEval8, Model};
 use crate::simd::{LaneStruct, Level, Schedule, Vec3x, f32x8};
 use crate::{Eval, Eval8, LobeMask, PerLobe, Sample, Sample8, Vec3x8};
 
-/// The BSDF at a hit: a material seen from one direction. Evaluate and sample it any number of times, one direction or
-/// eight at a time.
+/// BSDF at a hit: a material with its `wo` fixed. Evaluate and sample it any number of times, one direction or eight at a time.
 pub struct Bsdf<M: Model> {
     pub(crate) prepared: M::Prepared<f32>,
     pub(crate) level: Level,
 }
 
-/// The BSDFs at eight hits, one per lane.
+/// BSDFs at eight hits, one per lane.
 pub struct Bsdf8<M: Model> {
     pub(crate) prepared: M::Prepared<f32x8>,
     pub(crate) level: Level,
@@ -24,18 +23,18 @@ handle_impls! { Bsdf prepared Prepared<f32>; Bsdf8 prepared Prepared<f32x8>; }
 impl<M: Model> Bsdf<M> {
     level_methods! {}
 
-    /// S at `wi`, without the cosine, linear RGB, per steradian. Every scalar call takes a `Vec3`, a `Vec3A` or a
+    /// Evaluates S at `wi`, without the cosine, linear RGB, per steradian. Every scalar call takes a `Vec3`, a `Vec3A` or a
     /// [`Vec3x`].
     ///
-    /// - Domain: a unit `wi`; 0 within 1e-5 rad of the fibre's axis and where a component is not finite. Any other finite vector
-    ///   gives finite numbers that mean nothing; builds with debug assertions panic then.
+    /// - Domain: a unit `wi`. S is 0 within 1e-5 rad of the fibre's axis and where a component is not finite. Any other finite
+    ///   vector gives finite numbers without meaning; builds with debug assertions panic on it.
     #[inline]
     #[must_use]
     pub fn eval(&self, wi: impl Into<Vec3x<f32>>) -> [f32; 3] {
         self.eval_pdf(wi).value
     }
 
-    /// Density of sampling `wi`, per steradian; the domain is that of [`eval`](Self::eval).
+    /// Returns the density of sampling `wi`, per steradian; the domain is that of [`eval`](Self::eval).
     ///
     /// - Integral: 1 over the sphere, unless the model discards samples.
     #[inline]
@@ -44,24 +43,24 @@ impl<M: Model> Bsdf<M> {
         self.eval_pdf(wi).pdf
     }
 
-    /// Value and density at `wi`, for little more than the cost of either.
+    /// Evaluates S and the density at `wi`, for little more than the cost of either.
     #[inline]
     #[must_use]
     pub fn eval_pdf(&self, wi: impl Into<Vec3x<f32>>) -> Eval {
         M::eval::<f32, f32>(&self.prepared, unit(wi.into()).alone())
     }
 
-    /// Each lobe's value, colour and own density.
+    /// Evaluates each lobe's value, colour and own density at `wi`.
     #[inline]
     #[must_use]
     pub fn lobes(&self, wi: impl Into<Vec3x<f32>>) -> PerLobe<LobeEval> {
         M::lobes::<f32, f32>(&self.prepared, unit(wi.into()).alone())
     }
 
-    /// A direction for three uniform numbers in `[0, 1)`; the first chooses the lobe.
+    /// Draws a direction by three uniform numbers in `[0, 1)`, of which the first chooses the lobe.
     ///
-    /// `None` is a discarded sample. It counts, with a contribution of 0; do not draw it again. NaN among the numbers
-    /// gives one.
+    /// `None` is a discarded sample. It counts as a sample whose contribution is 0, so do not draw it again. NaN among the numbers
+    /// discards the sample.
     #[inline]
     #[must_use]
     pub fn sample(&self, xi: [f32; 3]) -> Option<Sample> {
@@ -71,7 +70,7 @@ impl<M: Model> Bsdf<M> {
         ))
     }
 
-    /// As [`eval_pdf`](Self::eval_pdf), for eight directions.
+    /// Evaluates S and the density of eight directions, like [`eval_pdf`](Self::eval_pdf).
     #[inline]
     #[must_use]
     pub fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
@@ -81,7 +80,7 @@ impl<M: Model> Bsdf<M> {
         })
     }
 
-    /// As [`lobes`](Self::lobes), for eight directions.
+    /// Evaluates each lobe at eight directions, like [`lobes`](Self::lobes).
     #[inline]
     #[must_use]
     pub fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
@@ -91,7 +90,7 @@ impl<M: Model> Bsdf<M> {
         })
     }
 
-    /// As [`sample`](Self::sample), for eight triples of numbers.
+    /// Draws eight directions by eight triples of uniform numbers, like [`sample`](Self::sample).
     #[inline]
     #[must_use]
     pub fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
@@ -101,14 +100,14 @@ impl<M: Model> Bsdf<M> {
         })
     }
 
-    /// The constants of the model at this hit, for what a model offers beside the calls of every model.
+    /// Returns the constants of the model at this hit, for what a model offers beyond the calls of every model.
     #[inline]
     #[must_use]
     pub const fn constants(&self) -> &M::Prepared<f32> {
         &self.prepared
     }
 
-    /// The hit with only some of its lobes: the others neither scatter nor are sampled.
+    /// Returns the BSDF with only some of its lobes: the others neither scatter nor are sampled.
     #[inline]
     #[must_use]
     pub fn with_lobes(&self, lobes: LobeMask) -> Self {
@@ -118,9 +117,9 @@ impl<M: Model> Bsdf<M> {
         }
     }
 
-    /// Directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
+    /// Returns the directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
     ///
-    /// - Accuracy, of the published model: 1e-4 relative for lobes of any width, seen from further than 1e-5 rad from the axis.
+    /// - Accuracy, for the published model: 1e-4 relative for lobes of any width, viewed from further than 1e-5 rad from the axis.
     #[inline]
     #[must_use]
     pub fn albedo(&self) -> PerLobe<[f32; 3]> {
@@ -131,7 +130,7 @@ impl<M: Model> Bsdf<M> {
 impl<M: Model> Bsdf8<M> {
     level_methods! {}
 
-    /// Value and density at `wi`, each lane at its own hit.
+    /// Evaluates S and the density at `wi`, each lane at its own hit.
     #[inline]
     #[must_use]
     pub fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
@@ -141,7 +140,7 @@ impl<M: Model> Bsdf8<M> {
         })
     }
 
-    /// Each lobe's value, colour and own density, each lane at its own hit.
+    /// Evaluates each lobe's value, colour and own density, each lane at its own hit.
     #[inline]
     #[must_use]
     pub fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
@@ -151,7 +150,7 @@ impl<M: Model> Bsdf8<M> {
         })
     }
 
-    /// One direction for each hit.
+    /// Draws one direction for each hit, each by three uniform numbers in `[0, 1)`.
     #[inline]
     #[must_use]
     pub fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
@@ -161,11 +160,11 @@ impl<M: Model> Bsdf8<M> {
         })
     }
 
-    /// The hit of one lane.
+    /// Returns the BSDF at the hit of one lane.
     ///
     /// # Panics
     ///
-    /// If `lane` is above 7.
+    /// Panics if `lane` is above 7.
     #[inline]
     #[must_use]
     pub fn lane(&self, lane: usize) -> Bsdf<M> {
@@ -175,7 +174,7 @@ impl<M: Model> Bsdf8<M> {
         }
     }
 
-    /// The hits with only some of their lobes: the others neither scatter nor are sampled.
+    /// Returns the BSDFs with only some of their lobes: the others neither scatter nor are sampled.
     #[inline]
     #[must_use]
     pub fn with_lobes(&self, lobes: LobeMask) -> Self {
@@ -185,7 +184,7 @@ impl<M: Model> Bsdf8<M> {
         }
     }
 
-    /// Directional albedo of each lobe, linear RGB, each lane at its own hit.
+    /// Returns the directional albedo of each lobe, linear RGB, each lane at its own hit.
     #[inline]
     #[must_use]
     pub fn albedo8(&self) -> PerLobe<[f32x8; 3]> {
@@ -195,7 +194,7 @@ impl<M: Model> Bsdf8<M> {
     }
 }
 
-/// The direction, which callers promise to be of unit length; 0 and what is not finite are black.
+/// Returns the direction, which callers promise to be of unit length; zero and non-finite directions evaluate to zero.
 #[inline(always)]
 pub(super) fn unit(wi: Vec3x<f32>) -> Vec3x<f32> {
     let length_sq = wi.dot(wi);

@@ -1,8 +1,8 @@
-//! Columns at one hit: structures of arrays of any length and alignment.
+//! Calls on columns at one hit: structures of arrays of any length and alignment.
 //!
-//! Columns whose addresses differ by a multiple of 4 KiB, as those a power of two long do, cost up to 40 % more on many CPUs:
-//! a load waits for an earlier store whose address has the same lower twelve bits. A few unused numbers between columns
-//! avoid it.
+//! On many CPUs columns whose addresses differ by a multiple of 4 KiB, such as columns a power of two long, cost up to 40 % more.
+//! The reason is that a load waits for an earlier store whose address has the same lower twelve bits. Leave a few unused numbers
+//! between the columns to avoid the wait.
 
 use super::Bsdf;
 use super::kernels::{AtBsdf, Pdf, Samples, SomeSamples, Value, ValuePdf, Weights};
@@ -15,13 +15,14 @@ use crate::simd::Row;
 use crate::simd::dispatch::clean_upper_halves;
 
 impl<M: Model> Bsdf<M> {
-    /// Values and densities of many directions: `wi` by component u, v, w. What is left out of `out` is not computed.
+    /// Evaluates S and the density of many directions; `wi` holds the components u, v, w. Columns left out of `out` are not
+    /// computed.
     ///
     /// Nothing is read or written beyond the columns, which may be of any length and alignment.
     ///
     /// # Errors
     ///
-    /// If the columns differ in length; nothing is written then.
+    /// Returns an error, and writes nothing, if the columns differ in length.
     ///
     /// ```
     /// use hairis::columns::EvalColumns;
@@ -48,12 +49,12 @@ impl<M: Model> Bsdf<M> {
         }
     }
 
-    /// Many samples: `xi` by component, for the lobe, the inclination and the azimuth, each in `[0, 1)`. Those without value and
-    /// slot take less time, with the same bits.
+    /// Draws many samples; `xi` holds uniform numbers in `[0, 1)` for the lobe, the inclination and the azimuth. Samples without
+    /// value and slot take less time, with the same bits.
     ///
     /// # Errors
     ///
-    /// If the columns differ in length; nothing is written then.
+    /// Returns an error, and writes nothing, if the columns differ in length.
     #[inline]
     pub fn sample_columns(
         &self,

@@ -1,7 +1,7 @@
 //! Handles of a model that is chosen at run time: object-safe traits, which the handle of every model implements.
 //!
-//! Each call is compiled once per model, and choosing it costs one jump. Scalar calls take a `Vec3`: a `Vec3x` by value
-//! would cost 8 to 15 ns.
+//! Each call is compiled once per model, and dispatch costs one jump. Scalar calls take a `Vec3`, because a `Vec3x` by value would
+//! cost 8 to 15 ns.
 
 use super::{Bsdf, Bsdf8};
 use crate::columns::{EvalColumns, LengthError, SampleColumns};
@@ -12,7 +12,7 @@ use crate::{Eval, Eval8, LobeMask, PerLobe, Sample, Sample8, Vec3x8};
 use core::fmt::Debug;
 use glam::Vec3;
 
-/// A [`Bsdf`] of any model.
+/// Object-safe interface of the [`Bsdf`] of any model.
 ///
 /// ```
 /// use hairis::model::DynBsdf;
@@ -24,62 +24,62 @@ use glam::Vec3;
 /// assert_eq!(chosen[0].eval_pdf(wo).value, chosen[1].eval_pdf(wo).value);
 /// ```
 pub trait DynBsdf: Debug + Send + Sync {
-    /// See [`Bsdf::eval_pdf`].
+    /// Evaluates S and the density at `wi`: see [`Bsdf::eval_pdf`].
     fn eval_pdf(&self, wi: Vec3) -> Eval;
 
-    /// See [`Bsdf::eval`].
+    /// Evaluates S at `wi`: see [`Bsdf::eval`].
     #[inline]
     fn eval(&self, wi: Vec3) -> [f32; 3] {
         self.eval_pdf(wi).value
     }
 
-    /// See [`Bsdf::pdf`].
+    /// Returns the density of sampling `wi`: see [`Bsdf::pdf`].
     #[inline]
     fn pdf(&self, wi: Vec3) -> f32 {
         self.eval_pdf(wi).pdf
     }
 
-    /// See [`Bsdf::lobes`].
+    /// Evaluates each lobe at `wi`: see [`Bsdf::lobes`].
     fn lobes(&self, wi: Vec3) -> PerLobe<LobeEval>;
 
-    /// See [`Bsdf::sample`].
+    /// Draws a direction: see [`Bsdf::sample`].
     fn sample(&self, xi: [f32; 3]) -> Option<Sample>;
 
-    /// See [`Bsdf::eval_pdf8`].
+    /// Evaluates S and the density of eight directions: see [`Bsdf::eval_pdf8`].
     fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8;
 
-    /// See [`Bsdf::lobes8`].
+    /// Evaluates each lobe at eight directions: see [`Bsdf::lobes8`].
     fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8>;
 
-    /// See [`Bsdf::sample8`].
+    /// Draws eight directions: see [`Bsdf::sample8`].
     fn sample8(&self, xi: &[f32x8; 3]) -> Sample8;
 
-    /// See [`Bsdf::eval_columns`].
+    /// Evaluates S and the density of many directions: see [`Bsdf::eval_columns`].
     ///
     /// # Errors
     ///
-    /// If the columns differ in length; nothing is written then.
+    /// Returns an error, and writes nothing, if the columns differ in length.
     fn eval_columns(&self, wi: [&[f32]; 3], out: EvalColumns<'_>) -> Result<(), LengthError>;
 
-    /// See [`Bsdf::sample_columns`].
+    /// Draws many samples: see [`Bsdf::sample_columns`].
     ///
     /// # Errors
     ///
-    /// If the columns differ in length; nothing is written then.
+    /// Returns an error, and writes nothing, if the columns differ in length.
     fn sample_columns(&self, xi: [&[f32]; 3], out: SampleColumns<'_>) -> Result<(), LengthError>;
 
-    /// See [`Bsdf::propose_columns`].
+    /// Draws candidates for resampling: see [`Bsdf::propose_columns`].
     ///
     /// # Errors
     ///
-    /// If the columns differ in length; nothing is written then.
+    /// Returns an error, and writes nothing, if the columns differ in length.
     fn propose_columns(&self, xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError>;
 
-    /// See [`Bsdf::weigh_columns`].
+    /// Weighs candidates for resampling: see [`Bsdf::weigh_columns`].
     ///
     /// # Errors
     ///
-    /// If the columns differ in length; nothing is written then.
+    /// Returns an error, and writes nothing, if the columns differ in length.
     fn weigh_columns(
         &self,
         candidates: CandidateColumns<'_>,
@@ -88,34 +88,34 @@ pub trait DynBsdf: Debug + Send + Sync {
         out: WeightColumns<'_>,
     ) -> Result<(), LengthError>;
 
-    /// See [`Bsdf::albedo`].
+    /// Returns the directional albedo of each lobe: see [`Bsdf::albedo`].
     fn albedo(&self) -> PerLobe<[f32; 3]>;
 
-    /// Keeps some lobes alone: see [`Bsdf::with_lobes`].
+    /// Restricts the BSDF to some of its lobes: see [`Bsdf::with_lobes`].
     fn set_lobes(&mut self, lobes: LobeMask);
 
-    /// Returns no more light than arrives: see [`Bsdf::conserving`].
+    /// Scales the BSDF so that it returns no more light than arrives: see [`Bsdf::conserving`].
     fn set_conserving(&mut self);
 
-    /// See [`Bsdf::with_level`].
+    /// Selects another instruction set: see [`Bsdf::with_level`].
     fn set_level(&mut self, level: Level);
 }
 
-/// A [`Bsdf8`] of any model.
+/// Object-safe interface of the [`Bsdf8`] of any model.
 pub trait DynBsdf8: Debug + Send + Sync {
-    /// See [`Bsdf8::eval_pdf8`].
+    /// Evaluates S and the density at `wi`, each lane at its own hit: see [`Bsdf8::eval_pdf8`].
     fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8;
 
-    /// See [`Bsdf8::lobes8`].
+    /// Evaluates each lobe at `wi`, each lane at its own hit: see [`Bsdf8::lobes8`].
     fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8>;
 
-    /// See [`Bsdf8::sample8`].
+    /// Draws one direction for each hit: see [`Bsdf8::sample8`].
     fn sample8(&self, xi: &[f32x8; 3]) -> Sample8;
 
-    /// See [`Bsdf8::propose8`].
+    /// Draws one candidate for each hit: see [`Bsdf8::propose8`].
     fn propose8(&self, xi: &[f32x8; 3]) -> Vec3x8;
 
-    /// See [`Bsdf8::weigh8`].
+    /// Weighs one candidate for each hit: see [`Bsdf8::weigh8`].
     fn weigh8(
         &self,
         wi: &Vec3x8,
@@ -125,20 +125,20 @@ pub trait DynBsdf8: Debug + Send + Sync {
         partition: Partition,
     ) -> Weighed8;
 
-    /// See [`Bsdf8::albedo8`].
+    /// Returns the directional albedos of the eight hits: see [`Bsdf8::albedo8`].
     fn albedo8(&self) -> PerLobe<[f32x8; 3]>;
 
-    /// Keeps some lobes alone: see [`Bsdf8::with_lobes`].
+    /// Restricts the BSDFs to some of their lobes: see [`Bsdf8::with_lobes`].
     fn set_lobes(&mut self, lobes: LobeMask);
 
-    /// Returns no more light than arrives: see [`Bsdf8::conserving`].
+    /// Scales the BSDFs so that they return no more light than arrives: see [`Bsdf8::conserving`].
     fn set_conserving(&mut self);
 
-    /// See [`Bsdf8::with_level`].
+    /// Selects another instruction set: see [`Bsdf8::with_level`].
     fn set_level(&mut self, level: Level);
 }
 
-/// Methods of a trait that are those of the handle.
+/// Methods of a trait that call the method of the same name of the handle.
 macro_rules! forward {
     ($handle:ident: $($(#[$attribute:meta])* $method:ident($($arg:ident: $type:ty),*) $(-> $out:ty)?;)*) => { $(
         #[inline]
@@ -148,7 +148,7 @@ macro_rules! forward {
     )* };
 }
 
-/// Methods of a trait that change a handle as its `with_` methods do.
+/// Methods of a trait that change a handle like its `with_` methods do.
 macro_rules! set {
     ($($method:ident($($arg:ident: $type:ty)?) = $with:ident;)*) => { $(
         #[inline]
@@ -159,7 +159,8 @@ macro_rules! set {
 }
 
 impl<M: Model> DynBsdf for Bsdf<M> {
-    // Not the handle's, whose debug builds refuse a `wi` that is not of unit length: tests of totality call these.
+    // Not the handle's methods, which in debug builds reject a `wi` that is not of unit length: tests of totality call these
+    // methods.
     #[inline]
     fn eval_pdf(&self, wi: Vec3) -> Eval {
         M::eval::<f32, f32>(&self.prepared, Vec3x::from(wi))

@@ -1,4 +1,4 @@
-//! Slice calls over hits: each entry has a hit and a direction of its own.
+//! Calls on columns of hits, in which each entry has a hit and a direction of its own.
 
 use crate::columns::{
     EvalColumns, HitColumns, LengthError, SAMPLE, SAMPLE_OF_BOTH, SampleColumns, VALUE_PDF, WI, XI,
@@ -13,15 +13,15 @@ use crate::{Bsdf8, Hit, Hit8, Material, Material8};
 use core::fmt;
 use wide::f32x8;
 
-/// Materials of a slice call: a table, and the index of each hit's material in it.
+/// Materials of a call on columns: a table, and for each hit the index of its material in the table.
 ///
-/// Hits in any order on a few materials take little longer than hits sorted by material: they are brought together, as by
-/// [`in_groups`]. Where each hit has a material of its own, each takes some ten times as long.
+/// Hits in any order on a few materials take little longer than hits sorted by material, because the call groups them by material
+/// like [`in_groups`]. If each hit has a material of its own, it takes some ten times as long.
 #[derive(Debug)]
 pub struct MaterialTable<'a, M: Model> {
-    /// The materials.
+    /// Table of materials, in which the indices count.
     pub materials: &'a [Material<M>],
-    /// Index of each hit's material.
+    /// Index of each hit's material in the table.
     pub index: &'a [u32],
 }
 
@@ -33,7 +33,7 @@ impl<M: Model> Clone for MaterialTable<'_, M> {
 }
 impl<M: Model> Copy for MaterialTable<'_, M> {}
 
-/// Why a slice call over hits did nothing.
+/// Error of a call on columns of hits, which then has written nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum HitsError {
@@ -41,11 +41,11 @@ pub enum HitsError {
     Length(LengthError),
     /// An index is not in the table of materials.
     Material {
-        /// The hit at fault.
+        /// Position of the hit at fault.
         hit: usize,
-        /// Its index.
+        /// Index of that hit's material, which is out of range.
         index: u32,
-        /// Number of materials.
+        /// Number of materials in the table.
         materials: usize,
     },
 }
@@ -79,15 +79,15 @@ impl From<LengthError> for HitsError {
 }
 
 impl<M: Model> Material<M> {
-    /// Value and density of many directions, each at a hit of its own on this material: `wi` by component u, v, w.
+    /// Evaluates S and the density of many directions, each at a hit of its own on this material; `wi` holds the components u, v, w.
     ///
-    /// The same numbers as [`prepare8`](Self::prepare8) and [`eval_pdf8`](crate::Bsdf8::eval_pdf8) give, for half the time:
+    /// The results equal those of [`prepare8`](Self::prepare8) and [`eval_pdf8`](crate::Bsdf8::eval_pdf8), in half the time, because
     /// the constants of a hit stay in registers. Nothing is read or written beyond the slices, which may be of any length and
     /// alignment.
     ///
     /// # Errors
     ///
-    /// If the slices differ in length; nothing is written then.
+    /// Returns an error, and writes nothing, if the slices differ in length.
     ///
     /// ```
     /// use hairis::{Gaussian, HairParams, Material, Published};
@@ -112,12 +112,12 @@ impl<M: Model> Material<M> {
         Ok(())
     }
 
-    /// Many samples, each at a hit of its own on this material: `xi` by component, for the lobe, the inclination and the
-    /// azimuth, each in `[0, 1)`.
+    /// Draws many samples, each at a hit of its own on this material; `xi` holds uniform numbers in `[0, 1)` for the lobe, the
+    /// inclination and the azimuth.
     ///
     /// # Errors
     ///
-    /// If the slices differ in length; nothing is written then.
+    /// Returns an error, and writes nothing, if the slices differ in length.
     ///
     /// ```
     /// use hairis::{Gaussian, HairParams, Material, Published};
@@ -147,14 +147,16 @@ impl<M: Model> Material<M> {
         Ok(())
     }
 
-    /// Both of [`eval_hits`](Self::eval_hits) and [`sample_hits`](Self::sample_hits), for less than the two calls.
+    /// Evaluates directions and draws samples at the same hits, in less time than [`eval_hits`](Self::eval_hits) and
+    /// [`sample_hits`](Self::sample_hits) together.
     ///
-    /// A path tracer with light sampling needs both: the direction towards a light, and the path's next one. The bits are those of
-    /// [`eval_hits`](Self::eval_hits) and [`sample_hits`](Self::sample_hits), and each hit is prepared once.
+    /// A path tracer with light sampling needs both: the direction towards a light, and the next direction of the path. The bits are
+    /// those of the two calls, but each hit is prepared only once.
     ///
     /// # Errors
     ///
-    /// If the slices differ in length; nothing is written then. Columns of `samples` have names that begin with `sample.`.
+    /// Returns an error, and writes nothing, if the slices differ in length. The error names columns of `samples` with the prefix
+    /// `sample.`.
     ///
     /// ```
     /// use hairis::{Gaussian, HairParams, Material, Published};
@@ -199,8 +201,8 @@ impl<M: Model> Material<M> {
     }
 }
 
-/// The rows of hits through packets in memory: for materials that integrate their lobes, beside which the memory is nothing, so
-/// that rows need no code with an integral.
+/// Computes rows of hits as packets in memory, for materials that integrate their lobes. Beside the integrals the memory costs
+/// nothing, and rows need no code with an integral.
 #[cold]
 #[inline(never)]
 fn in_packets<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize>(
@@ -222,7 +224,7 @@ fn in_packets<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize>(
     }
 }
 
-/// The columns of evaluations and of samples, empty ones where they are left out.
+/// Returns the columns of evaluations and of samples, with empty slices for the columns that are left out.
 #[inline]
 fn both<'a>(
     len: usize,
@@ -234,7 +236,7 @@ fn both<'a>(
     Ok([r, g, b, p, u, v, w, sr, sg, sb, sp, wr, wg, wb, slot])
 }
 
-/// The first eight numbers of a column, and 0 beyond its end.
+/// Returns the first eight numbers of a column, and 0 beyond its end.
 #[inline(always)]
 fn packet(column: &[f32]) -> f32x8 {
     let mut lanes = [0.0; 8];
@@ -243,11 +245,12 @@ fn packet(column: &[f32]) -> f32x8 {
 }
 
 impl<M: Model> MaterialTable<'_, M> {
-    /// As [`Material::eval_hits`], each hit with the material of its index, on the level of the first material.
+    /// Evaluates S and the density like [`Material::eval_hits`], each hit with the material of its index, on the level of the first
+    /// material.
     ///
     /// # Errors
     ///
-    /// If the columns differ in length, or an index is not in the table; nothing is written then.
+    /// Returns an error, and writes nothing, if the columns differ in length or an index is not in the table.
     #[inline]
     pub fn eval_hits(
         &self,
@@ -258,11 +261,11 @@ impl<M: Model> MaterialTable<'_, M> {
         self.run::<HitEvals, _, _>(hits.with(wi, WI)?, out.columns(hits.len(), VALUE_PDF)?)
     }
 
-    /// As [`Material::sample_hits`], each hit with the material of its index, on the level of the first material.
+    /// Draws samples like [`Material::sample_hits`], each hit with the material of its index, on the level of the first material.
     ///
     /// # Errors
     ///
-    /// If the columns differ in length, or an index is not in the table; nothing is written then.
+    /// Returns an error, and writes nothing, if the columns differ in length or an index is not in the table.
     #[inline]
     pub fn sample_hits(
         &self,
@@ -273,14 +276,16 @@ impl<M: Model> MaterialTable<'_, M> {
         self.run::<HitSamples, _, _>(hits.with(xi, XI)?, out.columns(hits.len(), SAMPLE)?)
     }
 
-    /// As [`Material::eval_sample_hits`], each hit with the material of its index, on the level of the first material.
+    /// Evaluates directions and draws samples like [`Material::eval_sample_hits`], each hit with the material of its index, on the
+    /// level of the first material.
     ///
-    /// A path tracer with light sampling needs both: the direction towards a light, and the path's next one. The bits are those of
-    /// [`eval_hits`](Self::eval_hits) and [`sample_hits`](Self::sample_hits), and each hit is prepared once.
+    /// A path tracer with light sampling needs both: the direction towards a light, and the next direction of the path. The bits are
+    /// those of [`eval_hits`](Self::eval_hits) and [`sample_hits`](Self::sample_hits), but each hit is prepared only once.
     ///
     /// # Errors
     ///
-    /// If the columns differ in length, or an index is not in the table; nothing is written then. Columns of `samples` have names that begin with `sample.`.
+    /// Returns an error, and writes nothing, if the columns differ in length or an index is not in the table. The error names
+    /// columns of `samples` with the prefix `sample.`.
     #[inline]
     pub fn eval_sample_hits(
         &self,
@@ -295,7 +300,8 @@ impl<M: Model> MaterialTable<'_, M> {
         self.run::<HitEvalsSamples, _, _>(inputs, outputs)
     }
 
-    /// Materials with several hits in a chunk as slice calls, and the rest eight hits at a time, one material per lane.
+    /// Computes materials with several hits in a chunk as calls on columns, and the other hits eight at a time, with one material
+    /// per lane.
     fn run<K: HitRow<M, I, N>, const I: usize, const N: usize>(
         &self,
         inputs: [&[f32]; I],
@@ -327,7 +333,7 @@ impl<M: Model> MaterialTable<'_, M> {
             if index.iter().all(|other| Some(other) == index.first()) {
                 return first.with_level(level).run::<K, I, N>(inputs, outputs);
             }
-            // Lanes past the last hit have the material of the first.
+            // Lanes past the last hit repeat the material of the first.
             let mut lanes = [first; 8];
             for (lane, material) in lanes.iter_mut().skip(1).zip(known) {
                 *lane = material;

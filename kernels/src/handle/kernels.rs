@@ -1,4 +1,4 @@
-//! Functions of a model as kernels of the vector layer: packets of eight, and rows of columns.
+//! Functions of a model as kernels of the vector layer, over packets of eight lanes and over rows of columns.
 
 use crate::model::{Eval, Eval8, Hit8, LobeEval8, Model, Sample8, SampleLanes};
 use crate::resample::{Weighed8, Weighing};
@@ -22,7 +22,7 @@ macro_rules! for_constants {
     };
 }
 
-/// Eight shading points. The caller's arguments are converted to hits inside the kernel, by vector code.
+/// Kernel that prepares eight shading points. The caller's arguments are converted to hits inside the kernel, by vector code.
 pub(crate) struct Prepare<'a, M: Model, C: Scalar, H> {
     pub(crate) material: &'a M::Material<C>,
     pub(crate) hits: H,
@@ -45,7 +45,7 @@ impl<M: Model, H: Into<Hit8>> Kernel for Prepare<'_, M, C, H> {
 }
 }
 
-/// Declares the kernel of one of a model's functions at a shading point, of eight lanes each.
+/// Declares the kernel of one of a model's functions at a shading point, with eight lanes each.
 macro_rules! at_bsdf {
     ($(#[$meta:meta])* $name:ident($input:ident: &$Input:ty) -> $Output:ty, $M:ident $L:ident $C:ident $prepared:ident $body:expr) => {
         $(#[$meta])*
@@ -84,7 +84,7 @@ at_bsdf! {
     SampleWi(xi: &[f32x8; 3]) -> Sample8, M L C prepared M::sample::<L, C>(prepared, fresh_lanes3(xi)).store()
 }
 
-/// The directional albedos of eight shading points.
+/// Kernel of the directional albedos of eight shading points.
 pub(crate) struct Albedo<'a, M: Model> {
     pub(crate) prepared: &'a M::Prepared<f32x8>,
 }
@@ -100,7 +100,7 @@ impl<M: Model> Kernel for Albedo<'_, M> {
     }
 }
 
-/// A row of a batch: the columns `K` of one shading point.
+/// Row of a batch: the columns `K` of one shading point.
 pub(crate) struct AtBsdf<'a, M: Model, K> {
     prepared: &'a M::Prepared<f32>,
     columns: PhantomData<K>,
@@ -133,7 +133,7 @@ impl<M: Model> Row<3, 3> for AtBsdf<'_, M, Value> {
     }
 }
 
-/// The column of the density.
+/// Column of the density alone.
 pub(crate) struct Pdf;
 impl<M: Model> Row<3, 1> for AtBsdf<'_, M, Pdf> {
     #[inline(always)]
@@ -171,7 +171,7 @@ impl<M: Model> Row<3, 11> for AtBsdf<'_, M, SomeSamples> {
     }
 }
 
-/// Columns of samples without value and slot.
+/// Columns of samples without value and slot, which a path tracer does not need.
 pub(crate) struct Weights;
 impl<M: Model> Row<3, 7> for AtBsdf<'_, M, Weights> {
     #[inline(always)]
@@ -182,22 +182,22 @@ impl<M: Model> Row<3, 7> for AtBsdf<'_, M, Weights> {
     }
 }
 
-/// The numbers of a sample in the order of its slices.
+/// Returns the numbers of a sample in the order of its slices.
 #[inline(always)]
 fn columns<L>(s: SampleLanes<L>) -> [L; 11] {
     let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
     [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot]
 }
 
-/// Columns of hits: constants of each hit are made and used in registers. Of the `I` inputs the first four are `wo` and `h`.
+/// Columns of hits: constants of each hit are computed and used in registers. The first four of the `I` inputs are `wo` and `h`.
 pub(crate) trait HitRow<M: Model, const I: usize, const N: usize> {
-    /// Numbers of each lane at a prepared hit.
+    /// Computes the numbers of each lane at a prepared hit.
     fn at<L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>, input: [L; I]) -> [L; N];
 
-    /// Numbers of each lane at eight prepared hits, by their calls for packets.
+    /// Computes the numbers of each lane at eight prepared hits, by their calls for packets.
     fn of_eight(bsdf: &Bsdf8<M>, input: &[f32x8; I]) -> [f32x8; N];
 
-    /// Numbers of each lane.
+    /// Prepares the hits of a row and computes the numbers of each lane.
     #[inline(always)]
     fn row<L: Lanes, C: Broadcast<L>>(material: &M::Material<C>, input: [L; I]) -> [L; N] {
         let wo = Vec3x::new(input[0], input[1], input[2]);
@@ -264,14 +264,14 @@ impl<M: Model> HitRow<M, 10, 15> for HitEvalsSamples {
     }
 }
 
-/// The numbers of an evaluation in the order of its columns.
+/// Returns the numbers of an evaluation in the order of its columns.
 #[inline(always)]
 fn value_pdf<L>(eval: Eval<L>) -> [L; 4] {
     let [r, g, b] = eval.value;
     [r, g, b, eval.pdf]
 }
 
-/// The numbers of an evaluation and those of a sample.
+/// Joins the numbers of an evaluation and of a sample.
 #[inline(always)]
 fn joined<L>([r, g, b, p]: [L; 4], sample: [L; 11]) -> [L; 15] {
     let [u, v, w, sr, sg, sb, sp, wr, wg, wb, slot] = sample;
@@ -304,8 +304,8 @@ impl<M: Model, K> Copy for AtHits<'_, M, K> {}
 
 impl<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize> Row<I, N> for AtHits<'_, M, K> {
     const OPTIONAL: bool = true;
-    // A measure of the code that makes these constants. For two packets of `Matched` with 25 bands, 904 bytes, it is 60 kB, where
-    // CPUs cache 32 to 64; with 9 bands, 520 bytes, it fits.
+    // A measure of the size of the code that computes these constants. For two packets of `Matched` with 25 bands, 904 bytes, the
+    // code takes 60 kB, where CPUs cache 32 to 64 kB; with 9 bands, 520 bytes, it fits.
     const PAIRS: bool = size_of::<M::Prepared<f32>>() <= 768;
 
     #[inline(always)]
@@ -314,7 +314,7 @@ impl<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize> Row<I, N> for
     }
 }
 
-/// The lanes of packets.
+/// Loads packets as lanes.
 #[inline(always)]
 fn lanes_of<L: Lanes<Stored = f32x8>, const I: usize>(input: &[f32x8; I]) -> [L; I] {
     let mut lanes = [L::splat(0.0); I];
@@ -326,7 +326,7 @@ fn lanes_of<L: Lanes<Stored = f32x8>, const I: usize>(input: &[f32x8; I]) -> [L;
     lanes
 }
 
-/// The packets of lanes.
+/// Stores lanes as packets.
 #[inline(always)]
 fn store_lanes<L: Lanes<Stored = f32x8>, const N: usize>(lanes: [L; N]) -> [f32x8; N] {
     let mut out = [f32x8::ZERO; N];
@@ -338,7 +338,7 @@ fn store_lanes<L: Lanes<Stored = f32x8>, const N: usize>(lanes: [L; N]) -> [f32x
     out
 }
 
-/// Eight hits, each on a material of its own.
+/// Kernel of eight hits, each on a material of its own.
 pub(crate) struct EightHits<'a, M: Model, K, const I: usize, const N: usize> {
     material: &'a M::Material<f32x8>,
     input: &'a [f32x8; I],
@@ -360,7 +360,7 @@ impl<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize> Kernel
     for EightHits<'_, M, K, I, N>
 {
     type Output = [f32x8; N];
-    // Packing the materials takes longer than what more registers would save.
+    // Packing the materials takes more time than more registers would save.
     const MANY_REGISTERS: bool = false;
 
     #[inline(always)]
@@ -369,7 +369,7 @@ impl<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize> Kernel
     }
 }
 
-/// Columns of the BSDF's candidates: directions that were not discarded.
+/// Columns of the BSDF's candidates: the directions of samples, 0 where a sample was discarded.
 pub(crate) type Proposals<'a, M> = AtBsdf<'a, M, Proposed>;
 pub(crate) struct Proposed;
 impl<M: Model> Row<3, 3> for Proposals<'_, M> {
@@ -379,7 +379,7 @@ impl<M: Model> Row<3, 3> for Proposals<'_, M> {
     }
 }
 
-/// The direction of a sample, 0 if it was discarded.
+/// Returns the direction of a sample, or 0 if the sample was discarded.
 #[inline(always)]
 fn proposed<L: Lanes>(sample: SampleLanes<L>) -> [L; 3] {
     let kept = L::splat(0.0).lt(sample.pdf);
@@ -390,7 +390,7 @@ fn proposed<L: Lanes>(sample: SampleLanes<L>) -> [L; 3] {
     ]
 }
 
-/// Columns of candidates' contributions and weights.
+/// Columns of the contributions and weights of candidates.
 #[derive(Clone, Copy)]
 pub(crate) struct Weighs<'a, M: Model> {
     at: AtBsdf<'a, M, ValuePdf>,
@@ -433,7 +433,7 @@ fn weighed<M: Model, L: Lanes, C: Broadcast<L>>(
     weighing.weigh(eval.value, eval.pdf, cos_theta_i, radiance, pdf_light)
 }
 
-/// A candidate of the BSDF for each of eight hits.
+/// Kernel that draws a candidate of the BSDF for each of eight hits.
 pub(crate) struct ProposalsOf<'a, M: Model> {
     pub(crate) prepared: &'a M::Prepared<f32x8>,
     pub(crate) xi: &'a [f32x8; 3],
@@ -452,7 +452,7 @@ impl<M: Model> Kernel for ProposalsOf<'_, M> {
     }
 }
 
-/// Contribution and weight of a candidate for each of eight hits.
+/// Kernel of the contribution and the weight of a candidate for each of eight hits.
 pub(crate) struct WeighOf<'a, M: Model> {
     pub(crate) prepared: &'a M::Prepared<f32x8>,
     pub(crate) wi: &'a Vec3x8,

@@ -11,9 +11,9 @@ use core::f32::consts::FRAC_PI_2;
 use core::mem::MaybeUninit;
 use glam::Vec3;
 
-/// A material: a model with its parameters, made once per material and prepared once per hit.
+/// Material: a model with its parameters, made once per material and prepared once per hit.
 ///
-/// Two materials are equal if their constants are, whatever their levels.
+/// Two materials are equal if their constants are equal, whatever their levels.
 ///
 /// ```
 /// use glam::Vec3;
@@ -28,7 +28,7 @@ pub struct Material<M: Model> {
     pub(crate) level: Level,
 }
 
-/// Eight materials, one per lane: for eight hits on different hair.
+/// Eight materials, one per lane, for eight hits on different hair.
 pub struct Material8<M: Model> {
     pub(crate) constants: M::Material<f32x8>,
     pub(crate) level: Level,
@@ -37,7 +37,7 @@ pub struct Material8<M: Model> {
 handle_impls! { Material constants Material<f32>; Material8 constants Material<f32x8>; }
 
 impl<M: Model> Material<M> {
-    /// The material of checked parameters, on the best instruction set of the CPU.
+    /// Makes a material from checked parameters, on the best instruction set of the CPU.
     #[inline]
     #[must_use]
     pub fn new(model: &M, params: &M::Params) -> Self {
@@ -49,10 +49,10 @@ impl<M: Model> Material<M> {
 
     level_methods! {}
 
-    /// The BSDF at a hit: a [`Hit`], or `wo` alone.
+    /// Prepares the BSDF at a hit, which is a [`Hit`] or `wo` alone.
     ///
-    /// - Domain: `wo` in the fibre's frame, of any length; zero counts as the normal plane. Along the fibre its
-    ///   azimuth counts as 0. With a `wo` that is not finite the BSDF is black.
+    /// - Domain: `wo` in the fibre's frame, of any length. Zero counts as a direction in the normal plane, and along the fibre the
+    ///   azimuth counts as 0. With a `wo` that is not finite the BSDF evaluates to zero.
     #[inline]
     #[must_use]
     pub fn prepare(&self, hit: impl Into<Hit>) -> Bsdf<M> {
@@ -66,8 +66,8 @@ impl<M: Model> Material<M> {
         }
     }
 
-    /// Value and density at one hit: the bits of [`prepare`](Self::prepare) and [`Bsdf::eval_pdf`] for less, as constants that the
-    /// evaluation does not need are not made, and the others stay in registers.
+    /// Evaluates S and the density at one hit, with the bits of [`prepare`](Self::prepare) and [`Bsdf::eval_pdf`] in less time,
+    /// because constants that the evaluation does not need are not computed, and the others stay in registers.
     ///
     /// ```
     /// use glam::Vec3;
@@ -87,7 +87,7 @@ impl<M: Model> Material<M> {
         M::eval::<f32, f32>(&prepared, unit(wi).alone())
     }
 
-    /// A sample of one hit: the bits of [`prepare`](Self::prepare) and [`Bsdf::sample`] for less.
+    /// Draws a sample at one hit, with the bits of [`prepare`](Self::prepare) and [`Bsdf::sample`] in less time.
     #[inline]
     #[must_use]
     pub fn sample_hit(&self, hit: impl Into<Hit>, xi: [f32; 3]) -> Option<Sample> {
@@ -100,8 +100,8 @@ impl<M: Model> Material<M> {
         Sample::from_lanes(&M::sample::<f32, f32>(&prepared, xi))
     }
 
-    /// Whether each hit integrates the lobes. By bits: a comparison of floats is legacy SSE in a plain build, which takes 120 ns where
-    /// a host has left the upper halves of the vector registers dirty.
+    /// Returns true if each hit integrates the lobes. Compared by bits, because a comparison of floats is legacy SSE in a plain
+    /// build, which takes 120 ns if a host has left the upper halves of the vector registers dirty.
     #[inline(always)]
     pub(super) fn is_integrating(&self) -> bool {
         M::integrates::<f32, f32>(&self.constants).to_bits() != 0
@@ -117,7 +117,7 @@ impl<M: Model> Material<M> {
         }
     }
 
-    /// As [`prepare`](Self::prepare), written where the caller wants it: a BSDF is 200 to 900 bytes.
+    /// Prepares the BSDF like [`prepare`](Self::prepare), and writes it to the caller's memory, because a BSDF is 200 to 900 bytes.
     #[inline]
     pub fn prepare_into<'a>(
         &self,
@@ -127,7 +127,7 @@ impl<M: Model> Material<M> {
         out.write(self.prepare(hit))
     }
 
-    /// The BSDFs at eight hits on this material, one per lane: a [`Hit8`], or eight `wo`.
+    /// Prepares the BSDFs at eight hits on this material, one per lane, from a [`Hit8`] or eight `wo`.
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
@@ -137,7 +137,7 @@ impl<M: Model> Material<M> {
         self.prepare8_at(hits)
     }
 
-    /// Not inlined: the code of the portable level, up to 80 kB, would be in both branches of [`prepare8`](Self::prepare8).
+    /// Not inlined, because the code of the portable level, up to 80 kB, would be in both branches of [`prepare8`](Self::prepare8).
     #[inline(never)]
     fn prepare8_at(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
         let (material, level) = (&self.constants, self.level);
@@ -145,11 +145,11 @@ impl<M: Model> Material<M> {
         level.run_into(kernel, |prepared| Bsdf8 { prepared, level })
     }
 
-    /// The largest directional albedo over all `wo` and the three channels: above 1 the hair gives back more light
-    /// than it receives.
+    /// Returns the largest directional albedo over all `wo` and the three channels. Above 1 the hair returns more light than it
+    /// receives.
     ///
-    /// Found on 294 inclinations, ever closer towards the poles, and between the neighbours of the best; it is an upper bound
-    /// by a margin of 1e-3, and tested against integrals in double precision on materials of every width.
+    /// The maximum is searched on 294 inclinations, ever closer towards the poles, and then between the neighbours of the best. With
+    /// a margin of 1e-3 it is an upper bound, tested against integrals in double precision on materials of every width.
     #[must_use]
     #[inline(never)]
     pub fn max_albedo(&self) -> f32 {
@@ -203,10 +203,10 @@ impl<M: Model> Material<M> {
         (most.max(here) * 1.001).min(f32::MAX)
     }
 
-    /// The factor on all intensities that keeps the directional albedo at most 1 whatever `wo`: 1 if it is already.
+    /// Returns the factor on all intensities that keeps the directional albedo at most 1 for every `wo`: 1 if it already is.
     ///
-    /// One factor for all directions, so that the model stays reciprocal; path tracing needs it. It does not help with
-    /// intensities whose albedo overflows (above 1e37).
+    /// Path tracing needs such a factor; one factor for all directions keeps the model reciprocal. It does not help with intensities
+    /// whose albedo overflows (above 1e37).
     #[must_use]
     #[inline]
     pub fn conserving_scale(&self) -> f32 {
@@ -215,10 +215,10 @@ impl<M: Model> Material<M> {
     }
 }
 
-/// Inclinations per side of the normal plane on which [`Material::max_albedo`] looks, the pole left out.
+/// Number of inclinations per side of the normal plane, without the pole, at which [`Material::max_albedo`] evaluates albedos.
 const INCLINATIONS: u16 = 147;
 
-/// Their angles from the pole: albedos change on any scale there, and slowly elsewhere.
+/// Returns the angle of an inclination from the pole, near which albedos change on any scale; elsewhere they change slowly.
 #[inline]
 fn angle_from_pole(step: f32) -> f32 {
     const LEAST: f32 = 1e-5;
@@ -228,7 +228,7 @@ fn angle_from_pole(step: f32) -> f32 {
 }
 
 impl<M: Model> Material8<M> {
-    /// Eight materials, one per lane, on the level of the first.
+    /// Packs eight materials, one per lane, on the level of the first.
     #[inline]
     #[must_use]
     pub fn pack(materials: [&Material<M>; 8]) -> Self {
@@ -240,7 +240,7 @@ impl<M: Model> Material8<M> {
 
     level_methods! {}
 
-    /// The BSDFs at eight hits, lane by lane: a [`Hit8`], or eight `wo`.
+    /// Prepares the BSDFs at eight hits, each on the material of its lane, from a [`Hit8`] or eight `wo`.
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
@@ -257,11 +257,12 @@ impl<M: Model> Material8<M> {
         level.run_into(kernel, |prepared| Bsdf8 { prepared, level })
     }
 
-    /// Lanes that integrate the lobes, if any does. The caller has cleaned the upper halves of the vector registers.
+    /// Returns 1 in the lanes that integrate the lobes, or `None` if no lane does. The caller has cleaned the upper halves of the
+    /// vector registers.
     #[inline(always)]
     pub(super) fn integrating(&self) -> Option<f32x8> {
         let lanes = M::integrates::<f32x8, f32x8>(&self.constants);
-        // By numbers and not by a mask of the CPU: compilers then drop the question for models that never integrate.
+        // Compared as numbers instead of by a mask of the CPU, because compilers then drop the test for models that never integrate.
         let any = lanes.as_array().iter().any(|lane| *lane > 0.0);
         any.then_some(lanes)
     }

@@ -1,4 +1,4 @@
-//! Energy conservation: a model that returns no more light than arrives.
+//! Energy conservation: models whose shading points return no more light than arrives.
 
 use crate::model::{Eval, Hit, LobeEval, Model, SampleLanes};
 use crate::simd::{Broadcast, Kernel, LaneStruct, Lanes, Path, Scalar, Vec3x};
@@ -6,10 +6,11 @@ use crate::{Bsdf, Bsdf8, LobeMask, Material, Material8, PerLobe};
 use wide::f32x8;
 
 impl<M: Model> Bsdf<M> {
-    /// The BSDF with each channel divided by its albedo where that is above 1: see [`Conserving`].
+    /// Returns the BSDF with each channel divided by its albedo where the albedo is above 1: see [`Conserving`].
     ///
-    /// For parameters that vary per hit: it integrates the lobes, where [`Conserving`] reads a fit of the material. With some
-    /// lobes alone, give the lobes first: `with_lobes` of a BSDF that conserves energy keeps its factors.
+    /// Call this for parameters that vary per hit, because it integrates the lobes where [`Conserving`] reads a fit of the material.
+    /// To conserve energy for some lobes alone, call `with_lobes` first: `with_lobes` of a BSDF that conserves energy keeps the
+    /// factors of all lobes.
     #[inline]
     #[must_use]
     pub fn conserving(&self) -> Self {
@@ -21,7 +22,7 @@ impl<M: Model> Bsdf<M> {
 }
 
 impl<M: Model> Bsdf8<M> {
-    /// The BSDFs with each channel divided by its albedo where that is above 1: see [`Bsdf::conserving`].
+    /// Returns the BSDFs with each channel divided by its albedo where the albedo is above 1: see [`Bsdf::conserving`].
     #[inline]
     #[must_use]
     pub fn conserving(&self) -> Self {
@@ -40,7 +41,7 @@ impl<M: Model> Bsdf8<M> {
     }
 }
 
-/// [`Model::conserving`] of eight shading points.
+/// Kernel of [`Model::conserving`] for eight shading points.
 struct Integrate<'a, M: Model> {
     prepared: &'a M::Prepared<f32x8>,
     lanes: f32x8,
@@ -57,17 +58,18 @@ impl<M: Model> Kernel for Integrate<'_, M> {
 }
 
 impl<M: Model> Material<Conserving<M>> {
-    /// Whether each hit integrates the lobes, as the fit of this material is not accurate enough: calls take many times as long,
-    /// with results as good.
+    /// Returns true if every hit integrates the lobes, because the fit of this material is not accurate enough. Calls then take many
+    /// times as long, with results as good.
     ///
-    /// Lobes narrower than a degree, or intensities far above 1, may need it; everyday hair does not.
+    /// Lobes narrower than a degree, or intensities far above 1, may need the integrals; everyday hair does not.
     #[inline]
     #[must_use]
     pub fn integrates(&self) -> bool {
         M::unfit::<f32, f32>(&self.constants.fit) > 0.0
     }
 
-    /// The material with energy conservation, whether it has it already or is [`raw`](Self::raw): makes the fit anew.
+    /// Returns the material with energy conservation, whether it conserves energy already or is [`raw`](Self::raw). The fit is made
+    /// anew.
     #[inline]
     #[must_use]
     pub fn conserving(&self) -> Self {
@@ -79,7 +81,7 @@ impl<M: Model> Material<Conserving<M>> {
         }
     }
 
-    /// The material without energy conservation, as [`from`](Self::from) makes it of a [`Material<M>`].
+    /// Returns the material without energy conservation, like [`from`](Self::from) of a [`Material<M>`].
     #[inline]
     #[must_use]
     pub fn raw(&self) -> Self {
@@ -90,8 +92,8 @@ impl<M: Model> Material<Conserving<M>> {
     }
 }
 
-/// The bits of a raw material with the type of one that conserves energy: for hosts that choose at run time, as a second type would
-/// double their code. Constants that change nothing are read all the same.
+/// Conversions of a raw material to the type of one that conserves energy, with the same bits: for hosts that choose at run time,
+/// because a second type would double their code. Constants that change nothing are read all the same.
 macro_rules! from_raw_material {
     ($($Handle:ident)*) => { $(
         impl<M: Model> From<$Handle<M>> for $Handle<Conserving<M>> {
@@ -112,7 +114,7 @@ macro_rules! from_raw_material {
 }
 from_raw_material! { Material Material8 }
 
-/// The BSDF with the type of one whose material conserves energy: both have the same constants.
+/// Conversions of a raw BSDF to the type of one whose material conserves energy: both have the same constants.
 macro_rules! from_raw_bsdf {
     ($($Handle:ident)*) => { $(
         impl<M: Model> From<$Handle<M>> for $Handle<Conserving<M>> {
@@ -128,17 +130,17 @@ macro_rules! from_raw_bsdf {
 }
 from_raw_bsdf! { Bsdf Bsdf8 }
 
-/// A model with each channel of every shading point scaled so that its albedo is at most 1, as part of `prepare` and nothing
-/// later. Slices of hits, eight lanes and samplers are those of the model.
+/// Model that scales each channel of every shading point so that its albedo is at most 1. The scaling is part of `prepare`; calls on
+/// hits, eight lanes and samplers are those of the inner model.
 ///
-/// The factor depends on `wo` alone, `min(1, 1 / albedo(wo))`. The model is not reciprocal where it is below 1:
-/// `S(wo, wi) / S(wi, wo)` is the ratio of two factors. Light hair keeps its brightness, while
-/// [`Material::conserving_scale`], one factor from the worst direction, darkens it but keeps the model reciprocal. Models that
-/// [conserve energy](Model::CONSERVES) by their parameters stay as they are.
+/// The factor depends on `wo` alone, `min(1, 1 / albedo(wo))`. The model is not reciprocal where the factor is below 1:
+/// `S(wo, wi) / S(wi, wo)` is the ratio of two factors. Light hair keeps its brightness, while [`Material::conserving_scale`], one
+/// factor from the worst direction, darkens the hair but keeps the model reciprocal. Models that [conserve energy](Model::CONSERVES)
+/// by their parameters stay as they are.
 ///
 /// - Accuracy: the albedo is at most 1.001.
-/// - Cost: a material keeps its albedo as a fit, which takes as long to make as some hundred hits; each hit reads it. A material
-///   whose fit is not accurate enough [`integrates`](Material::integrates) its lobes at every hit instead.
+/// - Cost: a material stores a fit of its albedo, which takes as long to make as some hundred hits, and which each hit reads. A
+///   material whose fit is not accurate enough [`integrates`](Material::integrates) its lobes at every hit instead.
 ///
 /// ```
 /// use glam::Vec3;
@@ -153,7 +155,7 @@ from_raw_bsdf! { Bsdf Bsdf8 }
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Conserving<M>(pub M);
 
-/// The constants of a material, and those of its energy conservation.
+/// Constants of a material, and the constants of its energy conservation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConservingMaterial<I, F> {
     inner: I,
@@ -207,7 +209,7 @@ impl<M: Model> Model for Conserving<M> {
         M::unfit::<L, C>(&material.fit)
     }
 
-    // For the shading points of materials without a fit; those with one keep their energy by `prepare`.
+    // For shading points of materials without a fit; a material with a fit conserves energy in `prepare`.
     #[inline(always)]
     fn conserving<L: Lanes>(
         prepared: &M::Prepared<L::Stored>,

@@ -5,10 +5,10 @@ use crate::model::math::sin_cos_half_turn;
 use crate::simd::{Lanes, Vec3x};
 use core::f32::consts::PI;
 
-/// A unit direction in the fibre's frame: the argument and the sample of a model.
+/// Unit direction in the fibre's frame, with the sine and cosine of its inclination: argument and sample of a model.
 #[derive(Clone, Copy, Debug)]
 pub struct Direction<L: Lanes> {
-    /// Its components.
+    /// Components along u, v and w.
     pub vector: Vec3x<L>,
     /// Sine of the inclination.
     pub sin_theta: L,
@@ -19,7 +19,7 @@ pub struct Direction<L: Lanes> {
 }
 
 impl<L: Lanes> Direction<L> {
-    /// The direction of a unit vector. Within [`GRAZING`] of the axis, and longer than 2, it is not
+    /// Makes the direction of a unit vector. A vector within [`GRAZING`] of the axis, or longer than 2, is not
     /// [sound](Self::is_sound).
     #[inline(always)]
     #[must_use]
@@ -41,7 +41,7 @@ impl<L: Lanes> Direction<L> {
         }
     }
 
-    /// The direction of any finite vector. Zero counts as v, in the normal plane; on the axis the cosine is 0.
+    /// Makes the direction of any finite vector. Zero counts as v, in the normal plane; on the axis the cosine is 0.
     #[inline(always)]
     #[must_use]
     pub fn normalized(vector: Vec3x<L>) -> Self {
@@ -77,7 +77,7 @@ impl<L: Lanes> Direction<L> {
         }
     }
 
-    /// The direction of an inclination and an azimuth, given as sine and cosine.
+    /// Makes the direction of an inclination and an azimuth, each given as sine and cosine.
     #[inline(always)]
     #[must_use]
     pub fn from_sin_cos([sin_theta, cos_theta]: [L; 2], [sin_phi, cos_phi]: [L; 2]) -> Self {
@@ -90,7 +90,7 @@ impl<L: Lanes> Direction<L> {
         }
     }
 
-    /// The direction of an inclination, at the azimuth `pi (2 xi - 1)`.
+    /// Makes the direction of an inclination, given as sine and cosine, at the azimuth `pi (2 xi - 1)`.
     #[inline(always)]
     #[must_use]
     pub fn with_uniform_azimuth(theta: [L; 2], xi: L) -> Self {
@@ -98,7 +98,7 @@ impl<L: Lanes> Direction<L> {
         Self::from_sin_cos(theta, [(sin + sin) * cos, cos.mul_sub(cos, sin * sin)])
     }
 
-    /// Mask of the lanes that hold a direction further than [`GRAZING`] from the axis.
+    /// Returns the mask of the lanes that hold a direction further than [`GRAZING`] from the axis.
     #[inline(always)]
     pub fn is_sound(&self) -> L::Mask {
         self.sound

@@ -1,34 +1,34 @@
-//! The four lobes of a model. Their order is defined in this file alone.
+//! The lobes of a model, their order, and sets of lobes. The order is defined in this file alone.
 
 use crate::simd::Lanes;
 use core::ops::{Index, IndexMut};
 
 /// One lobe of a scattering model: a slot from 0 to 3.
 ///
-/// The constants name the lobes of the published model. A model with other lobes names its own slots, for
-/// instance `const DIFFUSE: Lobe = Lobe::slot(0)`, and lists them in its [`Model::LOBES`](crate::model::Model::LOBES).
+/// The constants name the lobes of the published model. A model with other lobes names its own slots, for instance
+/// `const DIFFUSE: Lobe = Lobe::slot(0)`, and lists them in [`Model::LOBES`](crate::model::Model::LOBES).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Lobe(u8);
 
 impl Lobe {
-    /// Number of slots.
+    /// Number of slots that a model has for lobes.
     pub const COUNT: usize = 4;
-    /// Reflection off the surface, the primary highlight.
+    /// Reflection off the surface of the fibre: the primary highlight.
     pub const R: Self = Self(0);
-    /// Transmission through the fibre.
+    /// Transmission through the fibre: the light seen on hair lit from behind.
     pub const TT: Self = Self(1);
-    /// One internal reflection, the secondary highlight without its glints (TRT-g in the paper).
+    /// One reflection inside the fibre: the secondary highlight without its glints (TRT-g in the paper).
     pub const TRT: Self = Self(2);
-    /// The two glints of the secondary highlight; they share its longitudinal term.
+    /// The two glints of the secondary highlight, which share its longitudinal term.
     pub const GLINT: Self = Self(3);
-    /// Every slot, in order.
+    /// Every slot, in slot order.
     pub const ALL: [Self; Self::COUNT] = [Self::R, Self::TT, Self::TRT, Self::GLINT];
 
-    /// The lobe in slot `index`.
+    /// Returns the lobe in slot `index`.
     ///
     /// # Panics
     ///
-    /// If `index` is above 3: at compile time when used for a constant, as it is meant to be.
+    /// Panics if `index` is above 3. In a constant, which is the intended use, this is an error at compile time.
     #[inline]
     #[must_use]
     pub const fn slot(index: u8) -> Self {
@@ -39,14 +39,14 @@ impl Lobe {
         Self(index)
     }
 
-    /// The slot as an index.
+    /// Returns the number of the slot as an index into arrays such as [`PerLobe`].
     #[inline(always)]
     #[must_use]
     pub const fn index(self) -> usize {
         self.0 as usize
     }
 
-    /// The lobe of a slot number stored as a float; `None` for the -1 of a discarded sample.
+    /// Returns the lobe of a slot number stored as a float, or `None` for the -1 of a discarded sample.
     #[inline]
     pub(crate) fn from_number(number: f32) -> Option<Self> {
         Self::ALL
@@ -55,12 +55,12 @@ impl Lobe {
     }
 }
 
-/// One value per lobe.
+/// Array of one value per lobe, indexed by [`Lobe`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PerLobe<T>(pub [T; Lobe::COUNT]);
 
 impl<T: Copy> PerLobe<T> {
-    /// The values of the first `N` lobes, and `rest` in the slots after them.
+    /// Makes an array from the values of the first `N` lobes, with `rest` in the slots after them.
     #[inline(always)]
     #[must_use]
     pub fn padded<const N: usize>(values: [T; N], rest: T) -> Self {
@@ -75,7 +75,7 @@ impl<T: Copy> PerLobe<T> {
     }
 }
 
-/// Product, entry by entry.
+/// Multiplies two arrays entry by entry.
 #[inline(always)]
 pub(crate) fn times<L: Lanes>(x: [L; 4], y: [L; 4]) -> [L; 4] {
     [x[0] * y[0], x[1] * y[1], x[2] * y[2], x[3] * y[3]]
@@ -96,7 +96,7 @@ impl<T> IndexMut<Lobe> for PerLobe<T> {
     }
 }
 
-/// A subset of the lobes, for light-path expressions and AOVs.
+/// Set of lobes, for light-path expressions and AOVs.
 ///
 /// ```
 /// use hairis::{Lobe, LobeMask};
@@ -107,12 +107,12 @@ impl<T> IndexMut<Lobe> for PerLobe<T> {
 pub struct LobeMask(u8);
 
 impl LobeMask {
-    /// Every lobe.
+    /// Set of all four lobes.
     pub const ALL: Self = Self(0b1111);
-    /// No lobe: evaluates to zero, and every sample is discarded.
+    /// Empty set: the BSDF evaluates to zero, and every sample is discarded.
     pub const NONE: Self = Self(0);
 
-    /// The given lobes.
+    /// Makes the set of the given lobes.
     #[inline]
     #[must_use]
     pub const fn of(lobes: &[Lobe]) -> Self {
@@ -125,14 +125,14 @@ impl LobeMask {
         Self(bits)
     }
 
-    /// Whether `lobe` is in the set.
+    /// Returns true if `lobe` is in the set.
     #[inline]
     #[must_use]
     pub const fn contains(self, lobe: Lobe) -> bool {
         self.0 >> lobe.0 & 1 == 1
     }
 
-    /// 1 for a lobe in the set, 0 for one that is not.
+    /// Returns 1 for a lobe in the set and 0 for any other.
     #[inline]
     #[must_use]
     pub const fn factor(self, lobe: Lobe) -> f32 {
@@ -141,7 +141,7 @@ impl LobeMask {
 }
 
 impl LobeMask {
-    /// [`factor`](Self::factor) of each lobe.
+    /// Returns the [`factor`](Self::factor) of each lobe.
     #[inline(always)]
     pub(crate) fn factors<C: Lanes>(self) -> [C; Lobe::COUNT] {
         Lobe::ALL.map(|lobe| C::splat(self.factor(lobe)))
@@ -149,7 +149,7 @@ impl LobeMask {
 }
 
 impl Default for LobeMask {
-    /// Every lobe.
+    /// Returns the set of all lobes.
     #[inline]
     fn default() -> Self {
         Self::ALL

@@ -1,4 +1,4 @@
-//! Models given by their lobes alone, and the code that all of them share.
+//! Models that are defined by their lobes alone, and the code that these models share.
 
 mod mixture;
 
@@ -10,23 +10,25 @@ use crate::simd::{Broadcast, Choice, LaneStruct, Lanes, Scalar, Vec3x, lanes3};
 use crate::{Lobe, PerLobe};
 use wide::f32x8;
 
-/// A scattering model given by its lobes: the trait to implement for a new model.
+/// Scattering model defined by its lobes: the trait to implement for a new model.
 ///
-/// Every `LobeModel` is a [`Model`]. Guards, inputs that are not finite, the choice of a lobe, the density of the mixture,
-/// discarded samples, weights, masks, packing and a quadrature of the albedo are provided; scalar calls, eight lanes, dispatch and slices follow.
+/// Every `LobeModel` is a [`Model`]. The library provides guards, the handling of non-finite inputs, the choice of a lobe, the
+/// density of the mixture, discarded samples, weights, masks, packing and a quadrature of the albedo. Scalar calls, eight lanes,
+/// dispatch and columns follow.
 ///
 /// # What an implementation promises
 ///
-/// - `lobes`, `weights` and `sample_lobe` give no NaN for the directions and numbers they are given: both directions unit
-///   and further than [`GRAZING`](crate::model::GRAZING) from the axis (but `wo`, which may lie on it), `h` in `[-1, 1]`, `xi` in
-///   `[0, 1)`.
+/// - `lobes`, `weights` and `sample_lobe` return no NaN for the directions and numbers they receive. Both directions are unit
+///   vectors further than [`GRAZING`](crate::model::GRAZING) from the axis (except `wo`, which may lie on the axis). `h` is in
+///   `[-1, 1]`, and `xi` in `[0, 1)`.
 /// - `sample_lobe` draws from the density that `lobes` reports, which is above 0 wherever the lobe scatters.
-/// - Every function over lanes is `#[inline(always)]`, and so is all it calls. Array `map` and closures over lanes are calls.
+/// - Every function over lanes, and every function it calls, is `#[inline(always)]`. Array `map` and closures over lanes count as
+///   calls.
 ///
 /// # Examples
 ///
-/// A complete model of one lobe. One of two lobes, with a sampler of its own, is
-/// `examples/lambert_fiber` of the package `hairis-variants`.
+/// The example below is a complete model of one lobe. A model of two lobes, with a sampler of its own, is `examples/lambert_fiber`
+/// of the package `hairis-variants`.
 ///
 /// ```
 /// use core::f32::consts::FRAC_1_PI;
@@ -91,57 +93,56 @@ use wide::f32x8;
     note = "a bell is part of one: `Published(Gaussian)`, `Matched::new(Gaussian)`"
 )]
 pub trait LobeModel: Copy {
-    /// Parameters of a material, checked.
+    /// Checked parameters of a material.
     type Params;
     /// Constants of a material, declared with [`lane_struct!`](crate::simd::lane_struct).
     type Material<C: Scalar>: LaneStruct<Number = C, One = Self::Material<f32>, Eight = Self::Material<f32x8>>;
     /// Constants of a shading point.
     type Prepared<C: Scalar>: LaneStruct<Number = C, One = Self::Prepared<f32>, Eight = Self::Prepared<f32x8>>;
 
-    /// Names of the lobes, in slot order: 1 to 4.
+    /// Names of the lobes in slot order, 1 to 4 of them.
     const LOBES: &'static [&'static str];
-    /// Whether the parameters alone decide how much light returns: see [`Model::CONSERVES`]. Of other models given by their lobes
-    /// [`Conserving`](crate::Conserving) makes no material, which is an error of the compiler.
+    /// True if the parameters alone limit how much light returns: see [`Model::CONSERVES`]. For a `LobeModel` where this is false,
+    /// [`Conserving`](crate::Conserving) fails to compile when it makes a material.
     const CONSERVES: bool = false;
 
-    /// The constants of a material.
+    /// Computes the constants of a material from its parameters.
     fn material(&self, params: &Self::Params) -> Self::Material<f32>;
 
-    /// Everything that depends on the material and the hit alone. `wo` may have any length: see
-    /// [`Direction::normalized`].
+    /// Computes everything that depends on the material and the hit alone. `wo` may have any length: see [`Direction::normalized`].
     fn prepare<L: Lanes, C: Broadcast<L>>(
         material: &Self::Material<C>,
         hit: Hit<L>,
     ) -> Self::Prepared<L::Stored>;
 
-    /// Sampling weight of each lobe, to any common scale; 0 for slots without a lobe.
+    /// Returns the sampling weight of each lobe, to any common scale, and 0 for slots without a lobe.
     fn weights<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>) -> PerLobe<L>;
 
-    /// Each lobe's value, colour and own density at a direction.
+    /// Evaluates each lobe's value, colour and own density at a direction.
     fn lobes<L: Lanes, C: Broadcast<L>>(
         prepared: &Self::Prepared<C>,
         wi: &Direction<L>,
     ) -> PerLobe<LobeEval<L>>;
 
-    /// A direction of each lane's lobe. All three numbers are uniform: the first has chosen the lobe, and is stretched to
-    /// `[0, 1)` again.
+    /// Draws a direction from the lobe of each lane. All three numbers are uniform in `[0, 1)`: the first has chosen the lobe, and
+    /// is stretched to the whole interval again.
     fn sample_lobe<L: Lanes, C: Broadcast<L>>(
         prepared: &Self::Prepared<C>,
         lobe: L::Index,
         xi: [L; 3],
     ) -> Direction<L>;
 
-    /// Directional albedo of each lobe, linear RGB.
+    /// Returns the directional albedo of each lobe, linear RGB.
     ///
-    /// - Accuracy: 1024 lattice points per lobe, drawn by `sample_lobe`: 1e-6 where the weights depend on the second number
-    ///   alone and smoothly, up to square roots at its ends. Give the closed form where there is one.
+    /// - Accuracy: the provided quadrature draws 1024 lattice points per lobe by `sample_lobe`. Its error is 1e-6 if the weights
+    ///   depend on the second number alone and smoothly, up to square roots at its ends. Override it if there is a closed form.
     #[inline(always)]
     fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>) -> PerLobe<[L; 3]> {
         sampled_albedo::<Self, L, C>(prepared)
     }
 }
 
-/// The constants of a shading point of a [`LobeModel`], and the mixture of its lobes.
+/// Constants of a shading point of a [`LobeModel`], and the mixture of its lobes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixed<P, C> {
     prepared: P,
@@ -149,7 +150,7 @@ pub struct Mixed<P, C> {
 }
 
 impl<P, C> Mixed<P, C> {
-    /// The model's own constants.
+    /// Returns the constants that the model itself computed.
     #[inline(always)]
     #[must_use]
     pub const fn prepared(&self) -> &P {
@@ -162,12 +163,12 @@ crate::simd::lane_struct! {
     prepared: P, mixture: Mixture<C>
 }
 
-/// The density below which a sample is discarded: next to denormals its weight would have no digits.
+/// Density below which a sample is discarded, because close to denormals its weight would have no digits.
 const LEAST_DENSITY: f32 = 1e-30;
-/// The largest uniform number.
+/// Largest uniform number below 1.
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
-/// The sums over the lobes; 0 where the direction is none.
+/// Sums value and density over the lobes; the sums are 0 where `wi` is not a valid direction.
 #[inline(always)]
 fn total<M: LobeModel, L: Lanes, C: Broadcast<L>>(
     prepared: &Mixed<M::Prepared<C>, C>,
@@ -207,19 +208,19 @@ fn total<M: LobeModel, L: Lanes, C: Broadcast<L>>(
     }
 }
 
-/// The largest result where a lane is sound, 0 where it is not.
+/// Returns the largest result where a lane is sound, and 0 where it is not.
 #[inline(always)]
 fn limit<L: Lanes>(sound: L::Mask) -> L {
     L::keep(sound, L::splat(f32::MAX))
 }
 
-/// `x` between 0 and `limit`; NaN is at the limit.
+/// Clamps `x` between 0 and `limit`; NaN becomes the limit.
 #[inline(always)]
 fn within<L: Lanes>(x: L, limit: L) -> L {
     L::splat(0.0).max(x.min(limit))
 }
 
-/// The numbers, at most `limit`.
+/// Clamps each number to at most `limit`.
 #[inline(always)]
 fn min3<L: Lanes>([x, y, z]: [L; 3], limit: L) -> [L; 3] {
     [x.min(limit), y.min(limit), z.min(limit)]
@@ -370,7 +371,7 @@ impl<M: LobeModel> Model for M {
     }
 }
 
-/// Each lobe's albedo as the mean weight of its samples at the points of a lattice.
+/// Computes each lobe's albedo as the mean weight of its samples at the points of a lattice.
 #[inline(always)]
 fn sampled_albedo<M: LobeModel, L: Lanes, C: Broadcast<L>>(
     prepared: &M::Prepared<C>,
@@ -412,7 +413,7 @@ fn sampled_albedo<M: LobeModel, L: Lanes, C: Broadcast<L>>(
     PerLobe(albedo)
 }
 
-/// The fractional part of `(step + 1/2) ratio / 2^32`. In integers: a call of `floor` would be one of every step.
+/// Returns the fractional part of `(step + 1/2) ratio / 2^32`, in integers, because `floor` would be a call in every step.
 #[inline(always)]
 #[expect(clippy::cast_precision_loss, reason = "24 bits fit a float exactly")]
 fn lattice(step: u16, ratio: u32) -> f32 {

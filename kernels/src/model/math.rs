@@ -1,7 +1,7 @@
-//! Elementary functions on the ranges that the models use, one source for every backend.
+//! Elementary functions on the ranges that the models use, from one source for every backend.
 //!
-//! The general functions of `wide` branch on their data and cost two to four times as much. Each function here states
-//! its range, and the error measured on it by the tests (rows of `tests/tolerance.rs`). None branches.
+//! The general functions of `wide` branch on their data and cost two to four times as much. Each function here states its range, on
+//! which the tests measure its error (rows of `tests/tolerance.rs`), and none branches.
 
 pub use crate::hair::quadrature::GAUSS_LEGENDRE_32;
 
@@ -9,19 +9,19 @@ use crate::simd::Lanes;
 use crate::simd::pair::Pair;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 
-/// `pi/2 - FRAC_PI_2`, the rounding error of the constant.
+/// Rounding error of the constant `FRAC_PI_2`: `pi/2 - FRAC_PI_2`.
 pub const FRAC_PI_2_LOW: f32 = -4.371_139e-8;
 
-/// A polynomial of up to ten coefficients, the constant first; its even and odd halves are apart: half the dependency chain
-/// of Horner's rule.
+/// Evaluates a polynomial of up to ten coefficients, the constant first. Its even and odd halves are summed apart, which halves the
+/// dependency chain of Horner's rule.
 #[inline(always)]
 pub fn polynomial<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     halves::<L, N, 0>(x, coefficients)
 }
 
-/// [`polynomial`] of the coefficients from `FIRST` on, 0 or 2.
+/// Evaluates [`polynomial`] from the coefficient `FIRST` on, which is 0 or 2.
 ///
-/// Written out, not a loop: compilers that save space leave it one, over coefficients in memory.
+/// The steps are written out because compilers that optimise for size would keep a loop, over coefficients in memory.
 #[inline(always)]
 fn halves<L: Lanes, const N: usize, const FIRST: usize>(x: L, coefficients: [f32; N]) -> L {
     let square = x * x;
@@ -39,11 +39,11 @@ fn halves<L: Lanes, const N: usize, const FIRST: usize>(x: L, coefficients: [f32
     odd.mul_add(x, even)
 }
 
-/// A polynomial of up to ten coefficients, the constant first, by Horner's rule: the fewest instructions and registers, and the
-/// smallest error, for where other work fills its waits.
+/// Evaluates a polynomial of up to ten coefficients, the constant first, by Horner's rule. It takes the fewest instructions and
+/// registers and has the smallest error, but pays off only where other work fills its waits.
 ///
-/// Without fused products a step is two instructions that wait for each other, and a long chain is more than other work fills. Long
-/// polynomials then have their even and odd halves apart, but for the two lowest coefficients, for the sake of the error.
+/// Without fused products a step is two instructions that wait for each other, so that other work cannot fill a long chain. Long
+/// polynomials then have their even and odd halves apart, except for the two lowest coefficients, for the sake of the error.
 #[inline(always)]
 pub fn horner<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     let apart = !L::FUSES && N > 7;
@@ -64,7 +64,7 @@ pub fn horner<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     sum
 }
 
-/// `[a / x, b / y]`. Lanes that fuse share one division, the slowest instruction there; others have the time for two.
+/// Returns `[a / x, b / y]`. Lanes that fuse share one division, their slowest instruction; others have the time for two.
 #[inline(always)]
 pub(crate) fn quotients<L: Lanes>([a, x]: [L; 2], [b, y]: [L; 2]) -> [L; 2] {
     if L::FUSES {
@@ -75,27 +75,27 @@ pub(crate) fn quotients<L: Lanes>([a, x]: [L; 2], [b, y]: [L; 2]) -> [L; 2] {
     }
 }
 
-/// `log2(e) / 2`, negative: from a squared distance to the exponent of a Gaussian.
+/// Factor from a squared distance to the exponent of a Gaussian: `log2(e) / 2`, negative.
 const TO_EXPONENT: f32 = -0.5 * LOG2_E;
-/// Least exponent of [`gaussian`].
+/// Largest magnitude of the exponent in [`gaussian`].
 const LEAST_EXPONENT: f32 = 115.0;
-/// The largest squared distance that [`gaussian`] tells from others: a little less than that of the least exponent, so that no
-/// direction of rounding leads below it.
+/// Largest squared distance that [`gaussian`] distinguishes: a little below the distance of the least exponent, so that no direction
+/// of rounding leads beyond it.
 const FURTHEST: f32 = 0.999_98 * LEAST_EXPONENT / -TO_EXPONENT;
-/// [`FURTHEST`] of a power of the target, a little below the largest square of [`normal_tail`].
+/// Value of [`FURTHEST`] for a power of the target, a little below the largest square of [`normal_tail`].
 const NATIVE_FURTHEST: f32 = 159.41;
 
-/// `exp(-s/2)` for `s >= 0`, a Gaussian of the squared distance from its centre; exactly 0 from about `2^-115` down.
+/// Computes `exp(-s/2)` for `s >= 0`, a Gaussian of the squared distance from its centre; exactly 0 from about `2^-115` down.
 ///
-/// That is far below any other term of a sum, and so far above the denormals that the products made of it seldom are
-/// one: denormals cost as much as the rest of the model. NaN gives 0.
+/// The threshold is far below any other term of a sum, and so far above the denormals that products with the result are seldom
+/// denormal: denormals cost as much as the rest of the model. NaN gives 0.
 #[inline(always)]
 pub fn gaussian<L: Lanes>(s: L) -> L {
-    // The second operand of `min` wins over NaN.
+    // `min` returns its second operand for NaN.
     gaussian_within(s.min(L::splat(FURTHEST)))
 }
 
-/// [`gaussian`] for `s` up to [`FURTHEST`].
+/// Computes [`gaussian`] for `s` up to [`FURTHEST`].
 #[inline(always)]
 fn gaussian_within<L: Lanes>(s: L) -> L {
     if let Some(power) = (s * TO_EXPONENT).native_exp2() {
@@ -122,8 +122,8 @@ fn gaussian_within<L: Lanes>(s: L) -> L {
     p * n.bits_shl_23()
 }
 
-/// [`gaussian`], and `1` less it with its digits where that is small; exactly 0 and 1 from about `2^-115` down. NaN gives 0
-/// and 1.
+/// Computes [`gaussian`] and its complement to 1, which keeps its digits where it is small. They are exactly 0 and 1 from about
+/// `2^-115` down, and for NaN.
 #[inline(always)]
 pub fn gaussian_and_complement<L: Lanes>(s: L) -> (L, L) {
     let one = L::splat(1.0);
@@ -157,7 +157,7 @@ pub fn gaussian_and_complement<L: Lanes>(s: L) -> (L, L) {
     )
 }
 
-/// `atan t` for `|t| <= 1`.
+/// Computes `atan t` for `|t| <= 1`, in radians.
 #[inline(always)]
 pub fn atan_unit<L: Lanes>(t: L) -> L {
     let z = (t * t).interleaved();
@@ -177,10 +177,10 @@ pub fn atan_unit<L: Lanes>(t: L) -> L {
     p.mul_add(z * t, t)
 }
 
-/// Half of the angle in `[-pi/2, pi/2]` whose sine and cosine are given, on the unit circle.
+/// Computes half of the angle in `[-pi/2, pi/2]` whose sine and cosine are given, on the unit circle.
 ///
-/// Half the angle over its sine is a smooth function of its cosine: no division. It is taken less 1, so that the largest term of the
-/// angle is the sine itself, which is not rounded.
+/// Half the angle over its sine is a smooth function of the cosine, so that no division is needed. The function is fitted less 1, so
+/// that the largest term of the angle is the sine itself, which is not rounded.
 #[inline(always)]
 pub fn half_angle<L: Lanes>(sin: L, cos: L) -> L {
     // The constant is a float, and the others are fitted to it.
@@ -202,18 +202,18 @@ pub fn half_angle<L: Lanes>(sin: L, cos: L) -> L {
     less_one.mul_add(sin, sin)
 }
 
-/// Half of `atan2(y, x)` for `x >= 0`, an angle in `[-pi/4, pi/4]`; `length` is that of `(x, y)`. Zero length gives NaN.
+/// Computes half of `atan2(y, x)` for `x >= 0`, an angle in `[-pi/4, pi/4]`; `length` is that of `(x, y)`. Zero length gives NaN.
 ///
-/// The half-angle tangent of the angle or of its complement, whichever is smaller: half as far off as [`atan_unit`] of
-/// `y / (length + x)` is at the ends.
+/// The function takes the half-angle tangent of the angle or of its complement, whichever is smaller: the error is half as large as
+/// that of [`atan_unit`] of `y / (length + x)` at the ends.
 #[inline(always)]
 pub fn half_atan2<L: Lanes>(y: L, x: L, length: L) -> L {
     let [quarter, rest] = half_atan2_parts(y, x, length);
     quarter + rest
 }
 
-/// [`half_atan2`] as a sum of two: `pi/4` with the sign of the angle beyond 56 degrees, else 0; and what is left, with more digits
-/// than the sum.
+/// Computes [`half_atan2`] as a sum of two numbers. The first is `pi/4` with the sign of the angle beyond 56 degrees, else 0; the
+/// second is the remainder, with more digits than the sum.
 #[inline(always)]
 pub fn half_atan2_parts<L: Lanes>(y: L, x: L, length: L) -> [L; 2] {
     let c = L::splat;
@@ -226,7 +226,7 @@ pub fn half_atan2_parts<L: Lanes>(y: L, x: L, length: L) -> [L; 2] {
     [L::keep(near, quarter).times_sign(y), rest.times_sign(y)]
 }
 
-/// `atan t` for `|t| <= tan(pi/8)`.
+/// Computes `atan t` for `|t| <= tan(pi/8)`, in radians.
 #[inline(always)]
 pub fn atan_eighth_turn<L: Lanes>(t: L) -> L {
     let z = t * t;
@@ -242,7 +242,7 @@ pub fn atan_eighth_turn<L: Lanes>(t: L) -> L {
     p.mul_add(z * t, t)
 }
 
-/// `atan2(y, x)` for `y >= 0`: an angle in `[0, pi]`. Both zero give 0.
+/// Computes `atan2(y, x)` for `y >= 0`, an angle in `[0, pi]`. If both are zero, the angle is 0.
 #[inline(always)]
 pub fn atan2_upper<L: Lanes>(y: L, x: L) -> L {
     let c = L::splat;
@@ -254,13 +254,13 @@ pub fn atan2_upper<L: Lanes>(y: L, x: L) -> L {
     L::select(x.lt(c(0.0)), c(PI) - (a - 2.0 * FRAC_PI_2_LOW), a)
 }
 
-/// `(sin x, cos x)` for `|x| <= pi/2`.
+/// Computes `(sin x, cos x)` for `|x| <= pi/2`; the cosine keeps its digits where it vanishes.
 #[inline(always)]
 pub fn sin_cos_half_turn<L: Lanes>(x: L) -> (L, L) {
     sin_cos_twice(x * 0.5)
 }
 
-/// `(sin 2x, cos 2x)` for `|x| <= pi/4`.
+/// Computes `(sin 2x, cos 2x)` for `|x| <= pi/4`; the cosine keeps its digits where it vanishes.
 #[inline(always)]
 pub fn sin_cos_twice<L: Lanes>(x: L) -> (L, L) {
     // cos 2x = sin(pi/2 - |2x|), with pi/2 in two parts: the cosine keeps its digits where it vanishes.
@@ -269,7 +269,7 @@ pub fn sin_cos_twice<L: Lanes>(x: L) -> (L, L) {
     (sin, cos)
 }
 
-/// `(sin x, cos x)` for `|x| <= pi/2` to an absolute error: a third less work than [`sin_cos_twice`], whose cosine
+/// Computes `(sin x, cos x)` for `|x| <= pi/2` to an absolute error, for a third less work than [`sin_cos_twice`], whose cosine
 /// keeps its digits where it vanishes.
 #[inline(always)]
 pub fn sin_cos_absolute<L: Lanes>(x: L) -> (L, L) {
@@ -286,9 +286,9 @@ pub fn sin_cos_absolute<L: Lanes>(x: L) -> (L, L) {
     (sin_half_turn(x), p.mul_add(z, L::splat(1.0)))
 }
 
-/// Numerator and denominator of `tan x` for `|x| <= pi/2`.
+/// Computes the numerator and the denominator of `tan x` for `|x| <= pi/2`.
 ///
-/// For inversion: an error of 1e-7 in the angle that a number is mapped to is one of 1e-7 in the number.
+/// For inversion of a distribution: an error of 1e-7 in the angle that a number is mapped to is an error of 1e-7 in the number.
 #[inline(always)]
 pub fn tan_half_turn<L: Lanes>(x: L) -> (L, L) {
     let z = (x * x).interleaved();
@@ -296,7 +296,7 @@ pub fn tan_half_turn<L: Lanes>(x: L) -> (L, L) {
     (x * numerator, horner(z, [1.0, -0.445_485, 0.016_292_556_6]))
 }
 
-/// `sin x` for `|x| <= pi/2`.
+/// Computes `sin x` for `|x| <= pi/2`.
 #[inline(always)]
 pub fn sin_half_turn<L: Lanes>(x: L) -> L {
     let z = x * x;
@@ -312,7 +312,7 @@ pub fn sin_half_turn<L: Lanes>(x: L) -> L {
     p.mul_add(z * x, x)
 }
 
-/// `sqrt(1/2)` to `sqrt(2)`: what is left of a logarithm after the exponent, `log2(1 + f) / f`.
+/// Coefficients of `log2(1 + f) / f` for mantissas from `sqrt(1/2)` to `sqrt(2)`: the logarithm without its exponent.
 const LOG2_MANTISSA: [f32; 9] = [
     1.442_695_003_649_184_6,
     -0.721_347_347_241_464,
@@ -325,7 +325,7 @@ const LOG2_MANTISSA: [f32; 9] = [
     0.125_826_905_124_035_44,
 ];
 
-/// Logarithm to the base 2 of a normal number above 0; finite or NaN for any other.
+/// Computes the logarithm to the base 2 of a normal number above 0; any other number gives a finite number or NaN.
 #[inline(always)]
 pub fn log2<L: Lanes>(x: L) -> L {
     if let Some(log) = x.native_log2() {
@@ -336,8 +336,8 @@ pub fn log2<L: Lanes>(x: L) -> L {
     polynomial(f, LOG2_MANTISSA).mul_add(f, exponent)
 }
 
-/// Logarithm to the base 2 of `x` in `(0, 1]`, where `x - 1` is known with more digits than `x` has: `less_one` is that
-/// difference, and read where `x` is above `sqrt(1/2)`.
+/// Computes the logarithm to the base 2 of `x` in `(0, 1]`, where `less_one`, which is `x - 1`, is known with more digits than `x`
+/// has. `less_one` is read where `x` is above `sqrt(1/2)`.
 #[inline(always)]
 pub fn log2_near_one<L: Lanes>(x: L, less_one: L) -> L {
     let (mantissa, exponent) = x.split_exponent();
@@ -347,24 +347,24 @@ pub fn log2_near_one<L: Lanes>(x: L, less_one: L) -> L {
     polynomial(f, LOG2_MANTISSA).mul_add(f, exponent)
 }
 
-/// `log2(1 + f)` for `f` in `(-1, 0]`, with the digits of `f`; finite or NaN for any other.
+/// Computes `log2(1 + f)` for `f` in `(-1, 0]`, with the digits of `f`; any other number gives a finite number or NaN.
 #[inline(always)]
 pub fn log2_one_plus<L: Lanes>(f: L) -> L {
     log2_near_one(L::splat(1.0) + f, f)
 }
 
-/// The probability that a standard normal number is above `x`, for `x >= 0`; exactly 0 from about 12.6 up. NaN gives 0.
+/// Returns the probability that a standard normal number is above `x`, for `x >= 0`; exactly 0 from about 12.6 up. NaN gives 0.
 #[inline(always)]
 pub fn normal_tail<L: Lanes>(x: L) -> L {
-    // The square root of `FURTHEST`. The second operand of `min` wins over NaN.
+    // The square root of `FURTHEST`. `min` returns its second operand for NaN.
     let x = x.min(L::splat(12.625_9));
     normal_tail_ratio(x) * gaussian_within(x * x)
 }
 
-/// [`normal_tail`] over the density's shape there: `Q(x) exp(x^2 / 2)`, for `0 <= x <= 12.7`. Beyond it falls on towards 0, never
-/// below it, up to 1e9.
+/// Computes the ratio of [`normal_tail`] to the shape of the density, `Q(x) exp(x^2 / 2)`, for `0 <= x <= 12.7`. Beyond, the result
+/// falls on towards 0 and never below it, up to 1e9.
 ///
-/// The coefficients are floats, chosen together so that rounding adds least to the error.
+/// The coefficients are floats that were chosen together, so that rounding adds as little as possible to the error.
 #[inline(always)]
 pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
     let c = L::splat;
@@ -377,10 +377,10 @@ pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
     L::quotient(over, under)
 }
 
-/// The number that a standard normal one is above with probability `q`, for `0 < q <= 1/2`; finite for any other.
+/// Returns the number that a standard normal number exceeds with probability `q`, for `0 < q <= 1/2`; finite for any other `q`.
 ///
-/// Two branches, one polynomial each, in `w = -log2(4 q (1 - q))`: about `1 - 2q` times a series below 7, and about
-/// `sqrt w` beyond.
+/// Each of two branches is one polynomial in `w = -log2(4 q (1 - q))`: about `1 - 2q` times a series below 7, and about `sqrt w`
+/// beyond.
 #[inline(always)]
 pub fn normal_tail_inverse<L: Lanes>(q: L) -> L {
     let c = L::splat;

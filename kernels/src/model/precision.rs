@@ -1,4 +1,4 @@
-//! Arithmetic that the constants of a material are computed in: double precision on a host, single precision in generated
+//! Arithmetic that the constants of a material are computed in: double precision on a host, and single precision in generated
 //! source.
 
 use crate::model::math::{gaussian_and_complement, horner, sin_cos_half_turn};
@@ -7,11 +7,11 @@ use core::f32::consts::{FRAC_1_PI, PI};
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Sub};
 
-/// Numbers that a material's constants pass through, with more digits and range than the constants where there are such
-/// numbers. Sealed.
+/// Numbers in which the constants of a material are computed. Where the target has them, they have more digits and range than the
+/// constants. Sealed.
 ///
-/// `f64` is what [`Model::material`](crate::model::Model::material) computes with. [`Single`] has no more digits than the
-/// constants; its functions are free of control flow, so that they run on lanes that record.
+/// [`Model::material`](crate::model::Model::material) computes in `f64`. [`Single`] has no more digits than the constants, but its
+/// functions are free of control flow, so that they run on lanes that record.
 pub trait Precision:
     sealed::Sealed
     + Copy
@@ -21,43 +21,43 @@ pub trait Precision:
     + Mul<Output = Self>
     + Div<Output = Self>
 {
-    /// Parameters, and constants of a material.
+    /// Type of the parameters, and of the constants of a material.
     type Lane: Lanes<Stored = Self::Lane> + Broadcast<Self::Lane>;
-    /// Whether it has more range than the constants. Else colours are scaled before they are multiplied, and integrals are
-    /// closed forms, not sums.
+    /// True if the type has more range than the constants. Otherwise colours are scaled before they are multiplied, and integrals
+    /// are closed forms instead of sums.
     const IS_DOUBLE: bool;
 
-    /// A constant.
+    /// Converts a constant of a formula.
     fn constant(x: f64) -> Self;
-    /// A parameter.
+    /// Converts a parameter.
     fn of(x: Self::Lane) -> Self;
-    /// The constant that it is rounded to.
+    /// Rounds the number to a constant of the material.
     fn rounded(self) -> Self::Lane;
-    /// The larger of two numbers, neither of which is NaN.
+    /// Returns the larger of two numbers, neither of which is NaN.
     #[must_use]
     fn max(self, other: Self) -> Self;
-    /// `self < other`, false for NaN.
+    /// Returns true if `self < other`; false for NaN.
     fn lt(self, other: Self) -> <Self::Lane as Lanes>::Mask;
-    /// `yes` where the mask is set, `no` elsewhere.
+    /// Returns `yes` where the mask is set and `no` elsewhere.
     fn select(mask: <Self::Lane as Lanes>::Mask, yes: Self, no: Self) -> Self;
-    /// `x^n`, for `n` from 1 to 255.
+    /// Computes `x^n`, for `n` from 1 to 255.
     #[must_use]
     fn power(self, n: u8) -> Self;
-    /// Hyperbolic tangent of a number of at least 0.
+    /// Computes the hyperbolic tangent of a number of at least 0.
     #[must_use]
     fn tanh(self) -> Self;
-    /// `1 - exp(-x)` of a number of at least 0.
+    /// Computes `1 - exp(-x)` of a number of at least 0.
     #[must_use]
     fn one_less_exp(self) -> Self;
-    /// Sine and cosine of an angle within 12 rad.
+    /// Computes sine and cosine of an angle within 12 rad.
     fn sin_cos(self) -> [Self; 2];
-    /// `gamma(x + 1/2) / gamma(x + 1)` of a number of at least 1/2.
+    /// Computes `gamma(x + 1/2) / gamma(x + 1)` of a number of at least 1/2.
     #[must_use]
     fn half_gamma_ratio(self) -> Self;
 }
 
 pub(crate) mod sealed {
-    /// Keeps the implementations in this crate.
+    /// Supertrait that keeps implementations of [`Precision`](super::Precision) in this crate.
     pub trait Sealed {}
 }
 
@@ -119,7 +119,7 @@ impl Precision for f64 {
 
 /// Lanes as numbers of [`Precision`]: single precision, for generated source.
 ///
-/// - Accuracy: constants are within a few units in the last place of those in double precision (test `single` of
+/// - Accuracy: constants are within a few units in the last place of those computed in double precision (test `single` of
 ///   `hairis-shaders`).
 #[derive(Clone, Copy, Debug)]
 pub struct Single<L>(pub L);
@@ -210,7 +210,7 @@ impl<L: Lanes<Stored = L> + Broadcast<L>> Precision for Single<L> {
         let odd = L::splat(0.5).lt((turns - half).abs());
         [Self(L::negate(odd, sin)), Self(L::negate(odd, cos))]
     }
-    /// Stirling's series of the ratio about `x + 1/4`, two steps further up.
+    /// Computes Stirling's series of the ratio about `x + 1/4`, two steps further up.
     #[inline]
     fn half_gamma_ratio(self) -> Self {
         let (x, one) = (self.0, L::splat(1.0));

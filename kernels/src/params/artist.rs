@@ -5,31 +5,31 @@ use crate::ParamError;
 use core::f32::consts::{FRAC_PI_2, PI};
 
 const RAD_PER_DEG: f32 = PI / 180.0;
-/// Widths accepted, degrees.
+/// Smallest and largest width accepted, in degrees.
 const WIDTHS: [f32; 2] = [0.01, 180.0];
-/// Shifts accepted, degrees.
+/// Smallest and largest shift accepted, in degrees.
 const SHIFTS: [f32; 2] = [-90.0, 90.0];
-/// Separations of the glints accepted, degrees.
+/// Smallest and largest separation of the glints accepted, in degrees.
 const SEPARATIONS: [f32; 2] = [0.0, 360.0];
 
-/// A highlight that runs around the fibre: the primary (R) or the secondary (TRT).
+/// Controls of a highlight that runs around the fibre: the primary (R) or the secondary (TRT).
 ///
 /// - Source: Sadeghi et al. 2010, section 4: colour, intensity, longitudinal shift and width of a lobe.
 /// - Default: the primary highlight of [`ArtistControls::default`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Highlight {
-    /// Linear RGB, each finite and at least 0; usually in [0, 1].
+    /// Colour, linear RGB, each finite and at least 0; usually in [0, 1].
     pub color: [f32; 3],
     /// Factor on `color`, finite and at least 0.
     pub intensity: f32,
-    /// Place of the highlight along the fibre, degrees in [-90, 90]; the lobe's `alpha`, of the same sign.
+    /// Position of the highlight along the fibre, in degrees in [-90, 90]: the lobe's `alpha`, with the same sign.
     ///
-    /// Positive turns the lobe towards the tip (it peaks where `theta_i + theta_o` is twice the shift), so on hair
-    /// that curves over a head the highlight moves towards the *root*; negative moves it towards the *tip*. Real hair
-    /// has its primary highlight at -5 to -10 degrees and its secondary one at +7 to +15.
+    /// A positive shift turns the lobe towards the tip (the lobe peaks where `theta_i + theta_o` is twice the shift), so that on
+    /// hair that curves over a head the highlight moves towards the *root*. A negative shift moves it towards the *tip*. Real hair
+    /// has its primary highlight at -5 to -10 degrees and its secondary highlight at +7 to +15.
     pub shift_deg: f32,
-    /// Width along the fibre, degrees in [0.01, 180]: the lobe's `beta`, the standard deviation in `theta_h`. The
-    /// highlight itself is about 2.35 times as wide at half its height, in `theta_h`.
+    /// Width along the fibre, in degrees in [0.01, 180]: the lobe's `beta`, the standard deviation in `theta_h`. At half its height
+    /// the highlight itself is about 2.35 times as wide, in `theta_h`.
     pub width_deg: f32,
 }
 
@@ -45,20 +45,20 @@ impl Default for Highlight {
     }
 }
 
-/// The light that shines through the fibre (TT): the rim of hair lit from behind.
+/// Controls of the light that shines through the fibre (TT): the rim of hair lit from behind.
 ///
-/// - Default: that of [`ArtistControls::default`].
+/// - Default: the transmission of [`ArtistControls::default`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transmission {
-    /// Linear RGB, each finite and at least 0; usually in [0, 1].
+    /// Colour, linear RGB, each finite and at least 0; usually in [0, 1].
     pub color: [f32; 3],
     /// Factor on `color`, finite and at least 0.
     pub intensity: f32,
-    /// As [`Highlight::shift_deg`]; +2.5 to +5 degrees in real hair.
+    /// Position of the highlight along the fibre, like [`Highlight::shift_deg`]; +2.5 to +5 degrees in real hair.
     pub shift_deg: f32,
-    /// As [`Highlight::width_deg`].
+    /// Width along the fibre, like [`Highlight::width_deg`].
     pub width_deg: f32,
-    /// Width around the fibre, degrees in [0.01, 180]: `gamma_tt`. Small values light hair only from right behind.
+    /// Width around the fibre, in degrees in [0.01, 180]: `gamma_tt`. With small values the hair lights up only from right behind.
     pub azimuthal_width_deg: f32,
 }
 
@@ -75,16 +75,16 @@ impl Default for Transmission {
     }
 }
 
-/// The two bright spots inside the secondary highlight, whose colour, shift and width they share.
+/// Controls of the two bright spots inside the secondary highlight, whose colour, shift and width they share.
 ///
-/// - Default: those of [`ArtistControls::default`].
+/// - Default: the glints of [`ArtistControls::default`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glints {
-    /// Strength relative to the secondary highlight, finite and at least 0: `i_g`. 0 switches them off.
+    /// Strength relative to the secondary highlight, finite and at least 0: `i_g`. A strength of 0 switches the glints off.
     pub strength: f32,
-    /// Full angle from one glint to the other around the fibre, degrees in [0, 360]: twice `phi_g`.
+    /// Full angle from one glint to the other around the fibre, in degrees in [0, 360]: twice `phi_g`.
     pub separation_deg: f32,
-    /// Width of each glint around the fibre, degrees in [0.01, 180]: `gamma_g`.
+    /// Width of each glint around the fibre, in degrees in [0.01, 180]: `gamma_g`.
     pub azimuthal_width_deg: f32,
 }
 
@@ -99,12 +99,11 @@ impl Default for Glints {
     }
 }
 
-/// Hair in an artist's terms; [`HairParams::from_artist`] turns it into the parameters of the model.
+/// Hair in an artist's terms, which [`HairParams::from_artist`] converts to the parameters of the model.
 ///
-/// Every control acts alone, unlike the physical quantities behind a hair (Sadeghi et al. 2010, section 4): a colour
-/// times an intensity is the `i_*` of a [`HairDesc`], a shift its `alpha`, a width its `beta` or
-/// `gamma_*`, with degrees for radians, and half the separation of the glints is its `phi_g`. The default is
-/// [`HairParams::default`], but for rounding.
+/// Every control acts alone, unlike the physical quantities behind a hair (Sadeghi et al. 2010, section 4). A colour times an
+/// intensity is the `i_*` of a [`HairDesc`], a shift its `alpha`, and a width its `beta` or `gamma_*`, with degrees for radians.
+/// Half the separation of the glints is its `phi_g`. The default is [`HairParams::default`], except for rounding.
 ///
 /// ```
 /// use hairis::HairParams;
@@ -120,13 +119,13 @@ impl Default for Glints {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArtistControls {
-    /// The primary highlight (R), of the colour of the light: keep it white or nearly so.
+    /// Primary highlight (R), which has the colour of the light: keep its colour white or nearly so.
     pub primary: Highlight,
-    /// The light from behind (TT), which passed the pigment once.
+    /// Light from behind (TT), which passed the pigment once.
     pub transmission: Transmission,
-    /// The secondary highlight (TRT), of the colour of the hair: wider, and on the root's side of the primary.
+    /// Secondary highlight (TRT), which has the colour of the hair; it is wider, and on the root's side of the primary highlight.
     pub secondary: Highlight,
-    /// The glints of the secondary highlight.
+    /// Glints of the secondary highlight.
     pub glints: Glints,
 }
 
@@ -148,13 +147,13 @@ impl Default for ArtistControls {
 }
 
 impl HairParams {
-    /// The hair that `controls` describe.
+    /// Converts an artist's controls to the parameters of the model, and checks them.
     ///
     /// # Errors
     ///
-    /// The first control out of its range, under its own name (for instance `"secondary.width_deg"`), with its value
-    /// as given, in degrees where it is an angle. NaN and infinities never pass; nor does a colour whose product with
-    /// its intensity overflows.
+    /// Returns an error that holds the first control outside its range under its own name (for instance `"secondary.width_deg"`) and
+    /// its value as given, in degrees if the control is an angle. NaN and infinities are always rejected, and so is a colour whose
+    /// product with its intensity overflows.
     #[inline]
     pub fn from_artist(controls: &ArtistControls) -> Result<Self, ParamError> {
         let ArtistControls {
@@ -197,26 +196,26 @@ impl HairParams {
     }
 }
 
-/// `value` in radians, if it is within `range` degrees.
+/// Converts `value` to radians, if it is within `range` degrees.
 #[inline]
 fn degrees(field: &'static str, value: f32, range: [f32; 2]) -> Result<f32, ParamError> {
     Rule::Degrees(range).check(field, &[value])?;
     Ok(value * RAD_PER_DEG)
 }
 
-/// A shift in radians, within the exact bound of [`HairParams::new`] whatever the rounding.
+/// Converts a shift to radians, within the exact bound of [`HairParams::new`] whatever the rounding.
 #[inline]
 fn shift(field: &'static str, value: f32) -> Result<f32, ParamError> {
     Ok(degrees(field, value, SHIFTS)?.clamp(-FRAC_PI_2, FRAC_PI_2))
 }
 
-/// A width in radians; its smallest, 1.7e-4, is above [`MIN_WIDTH`](super::MIN_WIDTH).
+/// Converts a width to radians; the smallest, 1.7e-4, is above [`MIN_WIDTH`](super::MIN_WIDTH).
 #[inline]
 fn width(field: &'static str, value: f32) -> Result<f32, ParamError> {
     Ok(degrees(field, value, WIDTHS)?.min(MAX_WIDTH))
 }
 
-/// A colour times its intensity.
+/// Multiplies a colour by its intensity.
 #[inline]
 fn tint(
     color_field: &'static str,

@@ -1,9 +1,9 @@
-//! Refusals of parameters, and the rules that are behind them.
+//! Errors of parameters, and the rules that parameters must obey.
 
 use core::f32::consts::{FRAC_PI_2, PI};
 use core::fmt;
 
-/// The rule that each number of a field obeys.
+/// Rule that each number of a field obeys, with its range.
 ///
 /// ```
 /// use hairis::params::Rule;
@@ -19,7 +19,7 @@ pub enum Rule {
     Shift,
     /// An angle in `[0, pi]` rad.
     Azimuth,
-    /// Finite and at least 0.
+    /// A number that is finite and at least 0.
     NotNegative,
     /// An angle in this range of degrees, both ends included.
     Degrees([f32; 2]),
@@ -30,7 +30,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// The smallest and the largest number that obey the rule.
+    /// Returns the smallest and the largest number that obey the rule.
     #[inline]
     #[must_use]
     pub const fn range(self) -> [f32; 2] {
@@ -43,7 +43,7 @@ impl Rule {
         }
     }
 
-    /// Whether `value` obeys the rule; NaN never does.
+    /// Returns true if `value` obeys the rule; NaN never does.
     #[inline]
     #[must_use]
     pub fn accepts(self, value: f32) -> bool {
@@ -51,11 +51,11 @@ impl Rule {
         (least..=most).contains(&value)
     }
 
-    /// Checks the numbers of `field`.
+    /// Checks that the numbers of `field` obey the rule.
     ///
     /// # Errors
     ///
-    /// The first number that does not obey the rule; its place is named where there are several numbers.
+    /// Returns an error that holds the first number that breaks the rule, with its position if the field has several numbers.
     #[inline]
     pub fn check(self, field: &'static str, numbers: &[f32]) -> Result<(), ParamError> {
         for (number, value) in numbers.iter().enumerate() {
@@ -91,7 +91,7 @@ impl fmt::Display for Rule {
     }
 }
 
-/// Refusal of parameters: the field at fault, its value, and the rule it breaks.
+/// Error about a rejected parameter: the field at fault, its value, and the rule that the value breaks.
 ///
 /// ```
 /// use hairis::HairParams;
@@ -110,7 +110,7 @@ pub struct ParamError {
 }
 
 impl ParamError {
-    /// The refusal of `value`; `number` is its place in a field of several numbers.
+    /// Makes the error that rejects `value`; `number` is its position in a field of several numbers.
     #[inline]
     #[must_use]
     pub const fn new(field: &'static str, number: Option<usize>, rule: Rule, value: f32) -> Self {
@@ -122,28 +122,29 @@ impl ParamError {
         }
     }
 
-    /// Name of the field at fault.
+    /// Returns the name of the field at fault, as the caller spells it.
     #[inline]
     #[must_use]
     pub const fn field(&self) -> &'static str {
         self.field
     }
 
-    /// Place of the number at fault in the field: a lobe, or 0 red, 1 green, 2 blue. `None` if the field is one number.
+    /// Returns the position of the number at fault in its field: a lobe, or 0 red, 1 green, 2 blue. `None` if the field is one
+    /// number.
     #[inline]
     #[must_use]
     pub const fn number(&self) -> Option<usize> {
         self.number
     }
 
-    /// The rule that the value breaks.
+    /// Returns the rule that the value breaks.
     #[inline]
     #[must_use]
     pub const fn rule(&self) -> Rule {
         self.rule
     }
 
-    /// The value at fault.
+    /// Returns the value at fault, as the caller gave it.
     #[inline]
     #[must_use]
     pub const fn value(&self) -> f32 {

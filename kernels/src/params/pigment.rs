@@ -1,13 +1,13 @@
-//! Colours of pigment: the share of the light that passes a fibre.
+//! Colours of pigment: the share of the light that a fibre of some melanin or absorption transmits.
 
 use super::{ArtistControls, Rule};
 use crate::ParamError;
 
-/// Mean length of a passage through the fibre, in radii: `2 mean(cos gamma_t)` over offsets `h` across it, with
+/// Mean length of a passage through the fibre, in radii: `2 mean(cos gamma_t)` over offsets `h` across the fibre, with
 /// `sin gamma_t = h / eta` and an index of refraction of 1.55 at normal incidence, `sqrt(1 - 1/eta^2) + eta asin(1 / eta)`.
 const PASSAGE: f32 = 1.850_959_7;
 
-/// Absorption per fibre radius, linear RGB, of these concentrations of melanin.
+/// Computes the absorption per fibre radius, linear RGB, of concentrations of eumelanin and pheomelanin.
 ///
 /// `sigma_a = eumelanin (.419 .697 1.37) + pheomelanin (.187 .4 1.05)`
 ///
@@ -23,7 +23,7 @@ pub const fn melanin_absorption([eumelanin, pheomelanin]: [f32; 2]) -> [f32; 3] 
     ]
 }
 
-/// Concentrations of eumelanin and pheomelanin of an artist's melanin: how dark, and how red.
+/// Computes the concentrations of eumelanin and pheomelanin from an artist's melanin: how dark the hair is, and how red.
 ///
 /// `q = -ln max(1 - amount, 1e-4)`, eumelanin `q (1 - redness)`, pheomelanin `q redness`
 ///
@@ -31,7 +31,7 @@ pub const fn melanin_absorption([eumelanin, pheomelanin]: [f32; 2]) -> [f32; 3] 
 ///
 /// # Errors
 ///
-/// If `amount` or `redness` is outside `[0, 1]`.
+/// Returns an error if `amount` or `redness` is outside `[0, 1]`.
 #[inline]
 pub fn melanin_concentrations(amount: f32, redness: f32) -> Result<[f32; 2], ParamError> {
     Rule::Range([0.0, 1.0]).check("melanin_amount", &[amount, redness])?;
@@ -39,7 +39,7 @@ pub fn melanin_concentrations(amount: f32, redness: f32) -> Result<[f32; 2], Par
     Ok([quantity * (1.0 - redness), quantity * redness])
 }
 
-/// The share of the light that passes a fibre of this absorption per radius once: `exp(-1.851 sigma_a)`.
+/// Computes the share of the light that one passage through a fibre transmits, for an absorption per radius: `exp(-1.851 sigma_a)`.
 ///
 /// - Derivation: Beer's law over the mean length of a passage, `sqrt(1 - 1/eta^2) + eta asin(1 / eta)` radii for an index of refraction
 ///   eta of 1.55 at normal incidence.
@@ -47,7 +47,7 @@ pub fn melanin_concentrations(amount: f32, redness: f32) -> Result<[f32; 2], Par
 ///
 /// # Errors
 ///
-/// If a channel is negative or not finite.
+/// Returns an error if a channel is negative or not finite.
 ///
 /// ```
 /// use hairis::params::{melanin_absorption, transmittance};
@@ -62,12 +62,12 @@ pub fn transmittance(sigma_a: [f32; 3]) -> Result<[f32; 3], ParamError> {
 }
 
 impl ArtistControls {
-    /// Sets the colours to those of this absorption per fibre radius, of pigment or dye: that of the transmission is
-    /// [`transmittance`], that of the secondary highlight, whose light passes twice, its square. Intensities stay.
+    /// Sets the colours from an absorption per fibre radius, of pigment or dye. The transmission gets the [`transmittance`], and the
+    /// secondary highlight, whose light passes twice, its square. Intensities stay.
     ///
     /// # Errors
     ///
-    /// If a channel is negative or not finite.
+    /// Returns an error if a channel is negative or not finite.
     #[inline]
     pub fn with_absorption(mut self, sigma_a: [f32; 3]) -> Result<Self, ParamError> {
         let color = transmittance(sigma_a)?;
@@ -76,11 +76,11 @@ impl ArtistControls {
         Ok(self)
     }
 
-    /// Sets the colours to those of an artist's melanin: see [`melanin_concentrations`].
+    /// Sets the colours from an artist's melanin: see [`melanin_concentrations`].
     ///
     /// # Errors
     ///
-    /// If `amount` or `redness` is outside `[0, 1]`.
+    /// Returns an error if `amount` or `redness` is outside `[0, 1]`.
     ///
     /// ```
     /// use hairis::HairParams;

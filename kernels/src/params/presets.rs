@@ -1,4 +1,4 @@
-//! Named hair: everyday looks to start from.
+//! Named presets: everyday hair to start from, and the parameters of the paper's efficiency figures.
 
 use super::{HairDesc, HairParams};
 use core::f32::consts::PI;
@@ -48,7 +48,7 @@ impl Look {
     }
 }
 
-/// Base of the presets; each states its differences.
+/// Base of the presets, each of which states its differences.
 const BASE: Look = Look {
     alpha: -7.5,
     beta: 7.5,
@@ -109,7 +109,7 @@ const WHITE: HairParams = Look {
 }
 .params();
 
-/// Not of the looks: the set that Ou et al. measure efficiency with.
+/// Parameters with which Ou et al. measure efficiency; not an everyday look.
 const BRIGHT: HairParams = {
     let deg = PI / 180.0;
     HairParams(HairDesc {
@@ -125,56 +125,60 @@ const BRIGHT: HairParams = {
     })
 };
 
-/// Presets. Shifts and widths are in the range Marschner et al. 2003 (table 1) measured on everyday hair, glints in
-/// that of Sadeghi et al. 2010. Intensities are ours: but for [`bright`](Self::bright), the light a fibre
-/// returns, averaged over directions, is below what it receives in every channel (figures beside each, Gaussian
-/// model; test `params::presets_return_less_than_they_receive`). From grazing directions it may still return up to
-/// twice as much, as the model does not conserve energy: see [`Material::conserving_scale`](crate::Material::conserving_scale).
+/// Presets. Shifts and widths are in the range that Marschner et al. 2003 (table 1) measured on everyday hair, and glints in the
+/// range of Sadeghi et al. 2010. Intensities are ours: except for [`bright`](Self::bright), the light a fibre returns, averaged over
+/// directions, is below what it receives in every channel. The figures beside each preset are for the Gaussian model (test
+/// `params::presets_return_less_than_they_receive`). From grazing directions the fibre may still return up to twice as much, because
+/// the model does not conserve energy: see [`Material::conserving_scale`](crate::Material::conserving_scale).
 impl HairParams {
-    /// Blond: bright, warm, translucent; `beta_r` 8 degrees, soft glints. Returns (.81 .62 .34) of the light.
+    /// Returns blond hair: bright, warm and translucent, with soft glints; `beta_r` is 8 degrees. The fibre returns (.81 .62 .34) of
+    /// the light.
     #[inline]
     #[must_use]
     pub const fn blond() -> Self {
         BLOND
     }
 
-    /// Brown: `beta_r` 7.5 degrees, clear glints in a warm secondary highlight. Returns (.48 .30 .19) of the light.
+    /// Returns brown hair: clear glints in a warm secondary highlight; `beta_r` is 7.5 degrees. The fibre returns (.48 .30 .19) of
+    /// the light.
     #[inline]
     #[must_use]
     pub const fn brown() -> Self {
         BROWN
     }
 
-    /// Red: copper when lit from behind, `beta_r` 7.5 degrees. Returns (.70 .27 .13) of the light.
+    /// Returns red hair: copper when lit from behind; `beta_r` is 7.5 degrees. The fibre returns (.70 .27 .13) of the light.
     #[inline]
     #[must_use]
     pub const fn red() -> Self {
         RED
     }
 
-    /// Black: sleek, `beta_r` 6 degrees; all but the white primary highlight is absorbed. Returns (.12 .10 .09).
+    /// Returns black hair: sleek, and all but the white primary highlight is absorbed; `beta_r` is 6 degrees. The fibre
+    /// returns (.12 .10 .09) of the light.
     #[inline]
     #[must_use]
     pub const fn black() -> Self {
         BLACK
     }
 
-    /// White, as of an elderly person: rough, `beta_r` 9 degrees, hardly any pigment. Returns (.87 .85 .83).
+    /// Returns white hair of an elderly person: rough, with hardly any pigment; `beta_r` is 9 degrees. The fibre
+    /// returns (.87 .85 .83) of the light.
     #[inline]
     #[must_use]
     pub const fn white() -> Self {
         WHITE
     }
 
-    /// Bright: the set of the efficiency figures, brown with highlights as strong as an artist has them under direct light alone. It
-    /// returns about (3.9 3.0 2.1) times the light: scale it for path tracing.
+    /// Returns bright hair, with the parameters of the efficiency figures: brown, with highlights as strong as an artist sets them under
+    /// direct light alone. It returns about (3.9 3.0 2.1) times the light, so scale it for path tracing.
     #[inline]
     #[must_use]
     pub const fn bright() -> Self {
         BRIGHT
     }
 
-    /// Every preset with its name, for menus and test grids. The figures of this project are those of the first.
+    /// Returns every preset with its name, for menus and test grids. The figures of this project use the first preset.
     ///
     /// ```
     /// use hairis::HairParams;
@@ -195,7 +199,7 @@ impl HairParams {
 }
 
 impl Default for HairParams {
-    /// [`HairParams::brown`].
+    /// Returns [`HairParams::brown`].
     #[inline]
     fn default() -> Self {
         BROWN

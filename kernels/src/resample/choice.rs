@@ -1,42 +1,42 @@
-//! The choice of a few candidates by their weights.
+//! Choice of a few candidates by their weights.
 
-/// A candidate that was chosen: one ray.
+/// Candidate that was chosen, for which the host traces one ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
     /// Index of the candidate.
     pub index: usize,
-    /// Number of the `k` choices that fell on it, at least 1.
+    /// Number of the `k` choices that selected this candidate, at least 1.
     pub count: u32,
     /// Contribution of the ray to the estimate if it is unoccluded, linear RGB.
     pub contribution: [f32; 3],
 }
 
-/// The choices of [`choose`], in the order of the candidates.
+/// Iterator over the choices of [`choose`], in the order of the candidates.
 #[derive(Clone, Debug)]
 pub struct Choices<'a> {
     contribution: [&'a [f32]; 3],
     weight: &'a [f32],
-    /// The next candidate, and the weights before it.
+    /// Next candidate, and the sum of the weights before it.
     at: usize,
     before: f64,
-    /// The sum of all weights, the weight of one choice, and where in it each falls.
+    /// Sum of all weights, the weight of one choice, and the position of each choice in its interval.
     sum: f64,
     step: f64,
     u: f64,
     chosen: u32,
     k: u32,
-    /// The last candidate with a weight.
+    /// Last candidate with a positive weight.
     last: usize,
 }
 
-/// Chooses `k` of the candidates with probability proportional to their weights, by one uniform number `u` in `[0, 1)`: those
-/// whose interval of the running sum holds `(u + j) / k` of it, j from 0 to `k - 1`.
+/// Chooses `k` of the candidates with probability proportional to their weights, by one uniform number `u` in `[0, 1)`: choice j,
+/// from 0 to `k - 1`, selects the candidate whose interval of the running sum holds `(u + j) / k` of the total.
 ///
 /// The sum of `V * contribution` over the choices, V being visibility, is the estimate. Columns are those of
-/// [`weigh_columns`](crate::Bsdf::weigh_columns); the shortest counts. No candidate without a weight is chosen, and none if all
-/// are without. NaN as `u` counts as 0.
+/// [`weigh_columns`](crate::Bsdf::weigh_columns); if they differ in length, the shortest counts. A candidate without weight is never
+/// chosen, and none is chosen if all weights are 0. NaN as `u` counts as 0.
 ///
-/// Sums are in double precision: a faint candidate keeps its share beside one that is a million times as bright.
+/// Sums are in double precision, so that a faint candidate keeps its share beside one that is a million times as bright.
 #[inline]
 #[must_use]
 pub fn choose<'a>(contribution: [&'a [f32]; 3], weight: &'a [f32], k: u32, u: f32) -> Choices<'a> {
@@ -72,7 +72,7 @@ pub fn choose<'a>(contribution: [&'a [f32]; 3], weight: &'a [f32], k: u32, u: f3
 }
 
 impl Choices<'_> {
-    /// The sum of all weights: the estimate of the mean over the channels, were everything visible.
+    /// Returns the sum of all weights, which is the estimate of the mean over the channels if everything were visible.
     #[inline]
     #[must_use]
     #[expect(
@@ -98,7 +98,7 @@ impl Iterator for Choices<'_> {
             let weight = *self.weight.get(index)?;
             self.at += 1;
             self.before += f64::from(weight);
-            // The last one with a weight takes what rounding has left over.
+            // The last candidate with a weight takes what rounding has left over.
             let from = self.chosen;
             if index == self.last {
                 self.chosen = self.k;
@@ -113,7 +113,7 @@ impl Iterator for Choices<'_> {
                 let f = self
                     .contribution
                     .map(|column| column.get(index).copied().map_or(0.0, f64::from));
-                // In double precision: of a faint candidate it is more than a float holds.
+                // In double precision, because the scale of a faint candidate is more than a float holds.
                 let scale = f64::from(count) * self.step * 3.0
                     / (f[0] + f[1] + f[2]).max(f64::MIN_POSITIVE);
                 let contribution = f.map(|f| (f * scale).min(f64::from(f32::MAX)) as f32);

@@ -1,11 +1,11 @@
-//! The candidates of one hit, stored by column.
+//! Candidates of one hit, stored by column.
 
 use super::{CandidateColumns, Choice, Choices, Counts, Partition, WeightColumns, choose};
 use crate::columns::LengthError;
 use crate::model::DynBsdf;
 use glam::Vec3;
 
-/// The candidates of one hit, at most `N`: those of the BSDF first. Keep one per thread and use it again.
+/// Candidates of one hit, at most `N`, with those of the BSDF first. Keep one pool per thread and use it again.
 ///
 /// ```
 /// use glam::Vec3;
@@ -46,25 +46,25 @@ pub struct Pool<const N: usize> {
     weight: [f32; N],
     counts: Counts,
     partition: Partition,
-    /// Numbers of candidates as lengths.
+    /// Number of the BSDF's candidates, as a length.
     bsdf: usize,
     len: usize,
 }
 
-/// Columns of a technique's candidates that the host writes.
+/// Columns of the candidates of one technique, for the host to write.
 #[derive(Debug)]
 pub struct CandidateColumnsMut<'a> {
-    /// Towards the light, in the fibre's frame: u, v, w.
+    /// Direction towards the light, in the fibre's frame: u, v, w.
     pub wi: [&'a mut [f32]; 3],
-    /// Radiance from there, linear RGB.
+    /// Radiance from the direction, linear RGB, without visibility.
     pub radiance: [&'a mut [f32]; 3],
     /// The light's density of proposing the direction, per steradian.
     pub pdf_light: &'a mut [f32],
 }
 
 impl<const N: usize> Pool<N> {
-    /// A pool for so many candidates of each technique. `None` if there are more than `N` of them, or a [`Partition`] other
-    /// than `All` with candidates of the BSDF: the path's next direction is that technique's.
+    /// Makes a pool for these numbers of candidates. Returns `None` if they are more than `N` in all, or if a [`Partition`] other
+    /// than `All` is combined with candidates of the BSDF, because that technique is then the path's next direction.
     #[inline]
     #[must_use]
     pub fn new(counts: Counts, partition: Partition) -> Option<Self> {
@@ -85,11 +85,11 @@ impl<const N: usize> Pool<N> {
         })
     }
 
-    /// Draws the BSDF's candidates, one for each triple of numbers.
+    /// Draws the BSDF's candidates, one for each triple of uniform numbers.
     ///
     /// # Errors
     ///
-    /// If there are more or less numbers than candidates.
+    /// Returns an error if the columns of numbers differ in length from the number of the BSDF's candidates.
     #[inline]
     pub fn propose(
         &mut self,
@@ -102,7 +102,7 @@ impl<const N: usize> Pool<N> {
                  len,
                  expected,
              }| {
-                // The numbers are the first slices of that call, and the room of the pool is what they must fill.
+                // The numbers are the first slices of that call, but the pool's length is the one that they must have.
                 if field.starts_with("wi") {
                     LengthError {
                         field: "xi.lobe",
@@ -120,13 +120,13 @@ impl<const N: usize> Pool<N> {
         )
     }
 
-    /// The BSDF's candidates: directions to look up, and where radiance and density go.
+    /// Returns the BSDF's candidates: directions to look up, and columns for their radiance and density.
     #[inline]
     pub fn bsdf_candidates(&mut self) -> CandidateColumnsMut<'_> {
         self.candidates(0, self.bsdf)
     }
 
-    /// The light's candidates, all of which the host writes.
+    /// Returns the light's candidates, whose columns the host writes in full.
     #[inline]
     pub fn light_candidates(&mut self) -> CandidateColumnsMut<'_> {
         self.candidates(self.bsdf, self.len)
@@ -147,7 +147,7 @@ impl<const N: usize> Pool<N> {
         }
     }
 
-    /// Writes candidate `i` of the light: its direction, radiance and density. Nothing happens beyond the last.
+    /// Writes candidate `i` of the light: its direction, radiance and density. An `i` beyond the last candidate is ignored.
     #[inline]
     pub fn set_light(&mut self, i: usize, wi: Vec3, radiance: [f32; 3], pdf_light: f32) {
         let mut columns = self.light_candidates();
@@ -156,7 +156,8 @@ impl<const N: usize> Pool<N> {
         set(&mut [columns.pdf_light], i, [pdf_light]);
     }
 
-    /// Asks `light` for the radiance and the light's density in the direction of each of the BSDF's candidates.
+    /// Calls `light` for each of the BSDF's candidates, and stores the radiance and the light's density that it returns for the
+    /// direction.
     #[inline]
     pub fn look_up(&mut self, mut light: impl FnMut(Vec3) -> ([f32; 3], f32)) {
         let mut columns = self.bsdf_candidates();
@@ -176,7 +177,7 @@ impl<const N: usize> Pool<N> {
         }
     }
 
-    /// Weighs the candidates, once all are looked up.
+    /// Weighs all candidates. Call it once their radiance and densities have been written.
     #[inline]
     pub fn weigh(&mut self, bsdf: &(impl DynBsdf + ?Sized)) {
         let len = self.len;
@@ -202,7 +203,7 @@ impl<const N: usize> Pool<N> {
         debug_assert!(written.is_ok(), "all columns have the length of the pool");
     }
 
-    /// Chooses `k` candidates by one uniform number: see [`choose`]. Yields the direction of each.
+    /// Chooses `k` candidates by one uniform number, and yields the direction of each with its choice: see [`choose`].
     #[inline]
     pub fn choose(&self, k: u32, u: f32) -> impl Iterator<Item = (Vec3, Choice)> {
         self.choices(k, u).map(|choice| {
@@ -214,7 +215,7 @@ impl<const N: usize> Pool<N> {
         })
     }
 
-    /// Choices by index.
+    /// Chooses `k` candidates by one uniform number, and yields the choices with the candidates' indices.
     #[inline]
     #[must_use]
     pub fn choices(&self, k: u32, u: f32) -> Choices<'_> {
@@ -228,7 +229,7 @@ impl<const N: usize> Pool<N> {
     }
 }
 
-/// Writes entry `i` of each column, if there is one.
+/// Writes entry `i` of each column, if it exists.
 #[inline]
 fn set<const C: usize>(columns: &mut [&mut [f32]; C], i: usize, values: [f32; C]) {
     for (column, value) in columns.iter_mut().zip(values) {

@@ -1,4 +1,4 @@
-//! A reservoir per lane: candidates come and go, one is kept.
+//! Reservoirs of eight hits, each of which keeps one of the candidates that are added to it.
 
 use super::Weighed8;
 use crate::Vec3x8;
@@ -7,23 +7,23 @@ use crate::simd::lanes::{lanes3, store3};
 use crate::simd::{Broadcast, Kernel, Lanes, Level, Vec3x};
 use wide::f32x8;
 
-/// One candidate of each of eight hits, kept with probability proportional to its weight of all that were added.
+/// Reservoir of eight hits: each lane keeps one candidate, with a probability proportional to its weight among all that were added.
 ///
-/// After the last one, trace [`wi`](Self::wi) and add [`estimate`](Self::estimate) where it is visible. One ray a lane; keep
-/// several reservoirs for several rays.
+/// After the last candidate, trace [`wi`](Self::wi) and add [`estimate`](Self::estimate) where the direction is visible. That is one
+/// ray per lane; keep several reservoirs for several rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reservoir8 {
-    /// The direction that is kept, in the fibre's frame; 0 while no candidate has had a weight.
+    /// Kept direction of each lane, in the fibre's frame; 0 while no candidate has had a weight.
     pub wi: Vec3x8,
-    /// Its contribution.
+    /// Contribution of the kept candidate, linear RGB.
     pub contribution: [f32x8; 3],
-    /// The sum of all weights: the estimate of the mean over the channels, were everything visible.
+    /// Sum of all weights, which is the estimate of the mean over the channels if everything were visible.
     pub sum: f32x8,
     level: Level,
 }
 
 impl Default for Reservoir8 {
-    /// Without a candidate.
+    /// Makes an empty reservoir, on the best instruction set of the CPU.
     #[inline]
     fn default() -> Self {
         let zero = f32x8::ZERO;
@@ -39,10 +39,10 @@ impl Default for Reservoir8 {
 impl Reservoir8 {
     level_methods! {}
 
-    /// Adds a candidate per lane, kept if `u` times the sum of the weights is below its own. `u` is uniform in `[0, 1)`, drawn
-    /// anew for each candidate: one number that is rescaled runs out of bits after twenty.
+    /// Adds a candidate per lane, which is kept if `u` times the sum of the weights is below the weight of the candidate. Draw `u`
+    /// anew for each candidate, uniform in `[0, 1)`: one number that is rescaled runs out of bits after twenty.
     ///
-    /// The candidate's weight counts the candidates of one hit: see [`Bsdf8::weigh8`](crate::Bsdf8::weigh8).
+    /// The candidate's weight includes the numbers of candidates of one hit: see [`Bsdf8::weigh8`](crate::Bsdf8::weigh8).
     #[inline]
     pub fn add(&mut self, wi: &Vec3x8, candidate: &Weighed8, u: &f32x8) {
         let other = Self {
@@ -54,9 +54,9 @@ impl Reservoir8 {
         self.merge(&other, u);
     }
 
-    /// Merges a reservoir of other candidates, whose `u` it takes: exact for the same hits, the same target and weights that
-    /// count the candidates of both. Across hits it would be biased: weigh the kept directions anew at the other hit, with
-    /// the weights of Lin et al. 2022.
+    /// Merges a reservoir of other candidates, by a uniform number `u` like [`add`](Self::add). The result is exact for the same
+    /// hits, the same target, and weights that count the candidates of both. Across hits it would be biased: weigh the kept
+    /// directions anew at the other hit, with the weights of Lin et al. 2022.
     #[inline]
     pub fn merge(&mut self, other: &Self, u: &f32x8) {
         *self = self.level.run(Merge {
@@ -66,7 +66,7 @@ impl Reservoir8 {
         });
     }
 
-    /// Contribution of the kept direction of each lane if it is visible, linear RGB.
+    /// Returns the contribution of each lane's kept direction if the direction is visible, linear RGB.
     #[inline]
     #[must_use]
     pub fn estimate(&self) -> [f32x8; 3] {
@@ -74,7 +74,7 @@ impl Reservoir8 {
     }
 }
 
-/// Two reservoirs as one.
+/// Kernel that merges two reservoirs.
 struct Merge<'a> {
     a: &'a Reservoir8,
     b: &'a Reservoir8,
@@ -111,7 +111,7 @@ impl Kernel for Merge<'_> {
     }
 }
 
-/// Contribution of the kept candidate by its share.
+/// Kernel that scales the contribution of the kept candidate, so that its mean over the channels is the sum of all weights.
 struct Estimate<'a>(&'a Reservoir8);
 
 impl Kernel for Estimate<'_> {
@@ -123,7 +123,7 @@ impl Kernel for Estimate<'_> {
         let [r, g, b]: [L; 3] = lanes3(&self.0.contribution);
         let sum: L = self.0.sum.lanes();
         let c = L::splat;
-        // Shares first, at most 3: the sum may be close to the largest float.
+        // Shares come first, at most 3, because the sum may be close to the largest float.
         let total = c(f32::MIN_POSITIVE).max(r + g + b);
         let most = c(f32::MAX);
         let scale = c(3.0) * sum;

@@ -1,7 +1,7 @@
 //! Eight lanes in one `__m256`, for CPUs found at run time to have AVX2 and FMA.
 //!
-//! `wide` chooses its instructions at compile time, so that a plain build has SSE2 alone; this newtype is private to
-//! the crate, and `dispatch` is the only place that names it as a type.
+//! `wide` chooses its instructions at compile time, so that a plain build has SSE2 alone. This newtype is private to the crate, and
+//! `dispatch` is the only place that names it as a type.
 
 #![allow(
     unsafe_code,
@@ -31,7 +31,7 @@ use wide::f32x8;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx2(__m256);
 
-/// Intrinsics of this module's target features.
+/// Calls intrinsics of this module's target features.
 macro_rules! avx2 {
     ($e:expr) => {{
         // SAFETY: code with the type `Avx2` comes from below `dispatch`'s check: the CPU has AVX2
@@ -66,7 +66,7 @@ impl Scalar for Avx2 {
     type Table = Entries<Self>;
 }
 
-/// An index from 0 to 3 per lane: its number, and where it is at least 1, 2 and 3. What is not used is not kept.
+/// Index from 0 to 3 per lane: its number, and the masks of at least 1, 2 and 3. The compiler drops the parts that are not used.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Indices {
     number: __m256i,
@@ -297,7 +297,7 @@ impl Choice<Avx2> for Indices {
     #[inline(always)]
     fn look_up_half(self, table: &[f32; 2]) -> Avx2 {
         Avx2(avx2!({
-            // Either entry in every second lane: the upper of an index's two bits is which.
+            // Either entry in every second lane: the upper of an index's two bits selects.
             let two = _mm256_castpd_ps(_mm256_set1_pd(transmute::<[f32; 2], f64>(*table)));
             _mm256_permutevar_ps(two, _mm256_srli_epi32::<1>(self.number))
         }))
@@ -325,7 +325,7 @@ fn interleave(mut a: __m256, mut b: __m256) -> (__m256, __m256) {
     (a, b)
 }
 
-/// Eight lanes of two rows of four.
+/// Joins two rows of four lanes to eight.
 #[target_feature(enable = "avx")]
 #[inline]
 fn two_rows(low: &[f32; 4], high: &[f32; 4]) -> __m256 {
@@ -333,7 +333,8 @@ fn two_rows(low: &[f32; 4], high: &[f32; 4]) -> __m256 {
     unsafe { _mm256_set_m128(transmute(*high), transmute(*low)) }
 }
 
-/// Two loads of 16 bytes, each of which a store of 16 bytes is forwarded to. From intrinsics the compiler makes one load of 32.
+/// Loads eight lanes in two loads of 16 bytes, each of which a store of 16 bytes is forwarded to. From intrinsics the compiler makes
+/// one load of 32 bytes.
 #[target_feature(enable = "avx")]
 #[inline]
 fn load_halves(from: &[f32; 8]) -> __m256 {

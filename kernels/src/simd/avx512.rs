@@ -1,7 +1,7 @@
 //! Sixteen lanes in one `__m512`, for the slices of CPUs found at run time to have AVX-512.
 //!
-//! Packets of eight are [`Avx2`](super::avx2::Avx2) there, too: `dispatch` compiles it for AVX-512 once more. Multiplication
-//! fuses as on AVX2, and the results are the same to the bit.
+//! Packets of eight are [`Avx2`](super::avx2::Avx2) on these CPUs, too: `dispatch` compiles them for AVX-512 once more.
+//! Multiplication fuses as on AVX2, and the results are the same to the bit.
 
 #![allow(
     unsafe_code,
@@ -28,7 +28,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx512(__m512);
 
-/// Intrinsics of this module's target features.
+/// Calls intrinsics of this module's target features.
 macro_rules! avx512 {
     ($e:expr) => {{
         // SAFETY: code with the type `Avx512` comes from below `dispatch`'s check: the CPU has
@@ -64,7 +64,7 @@ impl Scalar for Avx512 {
 }
 impl Schedule for Avx512 {}
 
-/// An index from 0 to 3 per lane: its number, and where it is at least 1, 2 and 3. What is not used is not kept.
+/// Index from 0 to 3 per lane: its number, and the masks of at least 1, 2 and 3. The compiler drops the parts that are not used.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Indices16 {
     number: __m512i,
@@ -74,7 +74,7 @@ pub(super) struct Indices16 {
 impl Lanes for Avx512 {
     type Mask = __mmask16;
     type Index = Indices16;
-    // Only columns run in sixteen lanes: nothing is kept in them between calls.
+    // Only columns run in sixteen lanes, which are not kept between calls.
     type Stored = Self;
     const FUSES: bool = true;
 
@@ -258,7 +258,7 @@ impl Choice<Avx512> for Indices16 {
     #[inline(always)]
     fn look_up_half(self, table: &[f32; 2]) -> Avx512 {
         Avx512(avx512!({
-            // Either entry in every second lane: the upper of an index's two bits is which.
+            // Either entry in every second lane: the upper of an index's two bits selects.
             let two = _mm512_castpd_ps(_mm512_set1_pd(transmute::<[f32; 2], f64>(*table)));
             _mm512_permutevar_ps(two, _mm512_srli_epi32::<1>(self.number))
         }))

@@ -1,4 +1,4 @@
-//! The choice of one of four per lane: by bounds that a number is compared with, and from tables.
+//! Choice of one of four entries per lane: by bounds that a number is compared with, and from tables.
 
 use super::lanes::{Broadcast, Lanes, lanes4};
 use super::table::Shared;
@@ -7,14 +7,14 @@ use super::table::Shared;
 pub trait Choice<L: Lanes<Index = Self>>: Copy {
     /// Counts the first `count` of the ascending `bounds` that are at most `x`.
     fn search(x: L, bounds: [L; 3], count: usize) -> Self;
-    /// Masks of the lanes whose index is at least 1, 2 and 3.
+    /// Returns the masks of the lanes whose index is at least 1, 2 and 3.
     fn masks(self) -> [L::Mask; 3];
-    /// Mask of the lanes whose index is `entry`, 0 to 3.
+    /// Returns the mask of the lanes whose index is `entry`, 0 to 3.
     fn equals(self, entry: usize) -> L::Mask;
-    /// The index as a number: 0, 1, 2 or 3.
+    /// Returns the index as a number: 0, 1, 2 or 3.
     fn to_number(self) -> L;
 
-    /// The entry of each lane's index.
+    /// Returns, for each lane, the entry at the lane's index.
     #[inline(always)]
     fn choose(self, table: [L; 4]) -> L {
         let [one, two, three] = self.masks();
@@ -24,31 +24,31 @@ pub trait Choice<L: Lanes<Index = Self>>: Copy {
             L::select(one, table[1], table[0]),
         )
     }
-    /// The entry of each lane's index, where 2 and 3 share the last one.
+    /// Returns, for each lane, the entry at the lane's index, where 2 and 3 share the last entry.
     #[inline(always)]
     fn choose_three(self, table: [L; 3]) -> L {
         let [one, two, _] = self.masks();
         L::select(two, table[2], L::select(one, table[1], table[0]))
     }
-    /// The entry of half of each lane's index: the first for 0 and 1, the second for 2 and 3.
+    /// Returns the entry at half of each lane's index: the first entry for 0 and 1, the second for 2 and 3.
     #[inline(always)]
     fn choose_half(self, [low, high]: [L; 2]) -> L {
         L::select(self.masks()[1], high, low)
     }
-    /// [`choose`](Self::choose), of numbers that all lanes share.
+    /// Returns the entry like [`choose`](Self::choose), of numbers that all lanes share.
     #[inline(always)]
     fn look_up(self, table: &[f32; 4]) -> L {
         self.choose(lanes4(table))
     }
-    /// The entry of each lane's index, and 4 more where the mask is set.
+    /// Returns, for each lane, the entry at the lane's index, which counts 4 more where the mask is set.
     #[doc(hidden)]
     #[inline(always)]
     fn look_up_eight(self, upper: L::Mask, table: &[f32; 8]) -> L {
         let [low, high] = halves(table);
         L::select(upper, self.look_up(&high), self.look_up(&low))
     }
-    /// Four numbers of the entry of each lane's index, and 4 more where the mask is set: the first, second, third or last four of
-    /// sixteen, the last of which is 0.
+    /// Returns four numbers of the entry at each lane's index, which counts 4 more where the mask is set: the first, second, third
+    /// or last four of sixteen, of which the last is 0.
     #[doc(hidden)]
     #[inline(always)]
     fn look_up_four(self, upper: L::Mask, table: &Shared, four: usize) -> [L; 4] {
@@ -60,19 +60,19 @@ pub trait Choice<L: Lanes<Index = Self>>: Copy {
             self.look_up_eight(upper, d),
         ]
     }
-    /// As [`look_up`](Self::look_up), of a table whose last two entries are equal.
+    /// Returns the entry like [`look_up`](Self::look_up), of a table whose last two entries are equal.
     #[inline(always)]
     fn look_up_three(self, table: &[f32; 4]) -> L {
         self.choose_three([table[0].lanes(), table[1].lanes(), table[2].lanes()])
     }
-    /// [`choose_half`](Self::choose_half), of numbers that all lanes share.
+    /// Returns the entry like [`choose_half`](Self::choose_half), of numbers that all lanes share.
     #[inline(always)]
     fn look_up_half(self, table: &[f32; 2]) -> L {
         self.choose_half([table[0].lanes(), table[1].lanes()])
     }
 }
 
-/// The first four of eight, and the last.
+/// Splits eight entries into the first four and the last four.
 #[inline(always)]
 fn halves<C: Copy>([a, b, c, d, e, f, g, h]: &[C; 8]) -> [[C; 4]; 2] {
     [[*a, *b, *c, *d], [*e, *f, *g, *h]]

@@ -1,4 +1,4 @@
-//! Rows of numbers over columns: slices of one length, which is checked once per call.
+//! Rows of numbers over columns: slices of one length, which every call checks once.
 #![allow(
     unsafe_code,
     reason = "a check per packet and column is most of what a short call costs"
@@ -9,19 +9,20 @@ use core::marker::PhantomData;
 use core::mem::MaybeUninit;
 use core::ptr;
 
-/// Work of [`Level::run_rows`](crate::simd::Level::run_rows) over columns: `I` numbers in, `N` numbers out, whatever the lanes.
+/// Computation of `N` numbers from `I` numbers, on any lanes, for columns: see [`Level::run_rows`](crate::simd::Level::run_rows).
 pub trait Row<const I: usize, const N: usize>: Copy {
-    /// Whether columns may be left out. An empty input but the first then reads as 0, and an empty output is not written.
+    /// True if columns may be left out. An empty input other than the first then reads as 0, and an empty output is not written.
     const OPTIONAL: bool = false;
-    /// Whether two packets are computed side by side. Not where their code together would be larger than the CPU's cache for it.
+    /// True if two packets are computed side by side. Set it to false if their code together would not fit the CPU's instruction
+    /// cache.
     const PAIRS: bool = true;
 
-    /// The numbers of each lane. Mark it `#[inline(always)]`, and all it calls.
+    /// Computes the output of each lane. Mark this function and every function it calls `#[inline(always)]`.
     fn row<L: Lanes>(self, input: [L; I]) -> [L; N];
 }
 
-/// Runs `body` for every column `i` below `n`, without a loop: compilers that save space keep loops, and with them the
-/// columns in memory.
+/// Runs `body` for every column `i` below `n`, without a loop, because compilers that optimise for size keep loops, and with them
+/// the columns in memory.
 macro_rules! each {
     ($i:ident < $n:ident, $body:expr) => {
         each!($i < $n, $body, 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14)
@@ -36,32 +37,32 @@ macro_rules! each {
     };
 }
 
-/// Columns of `len` rows: the addresses of that many numbers each.
+/// Columns of `len` rows, as the addresses of that many numbers each.
 #[derive(Clone, Copy)]
 pub(crate) struct Columns<'a, const I: usize, const N: usize> {
     inputs: [*const f32; I],
     outputs: [*mut f32; N],
     len: usize,
-    /// Bits of the columns that are left out, the inputs first: their addresses are not used.
+    /// Bit set of the columns that are left out, the inputs first: the addresses of these columns are not used.
     absent: u32,
     slices: PhantomData<&'a mut [f32]>,
 }
 
 impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
-    /// The columns that have the length of the first input; others are left out.
+    /// Takes the columns that are as long as the first input, and leaves out the others.
     #[inline(always)]
     pub(crate) fn some(inputs: &[&'a [f32]; I], outputs: &'a mut [&mut [f32]; N]) -> Self {
         Self::new(inputs, outputs)
     }
 
-    /// Columns, if they are of one length.
+    /// Takes the columns if they are of one length, and returns `None` otherwise.
     #[inline(always)]
     pub(crate) fn all(inputs: [&'a [f32]; I], mut outputs: [&'a mut [f32]; N]) -> Option<Self> {
         let columns = Self::new(&inputs, &mut outputs);
         (columns.absent == 0).then_some(columns)
     }
 
-    /// The outputs are to be borrowed as long as the columns.
+    /// Callers must borrow the outputs for as long as the columns exist.
     #[inline(always)]
     fn new(inputs: &[&[f32]; I], outputs: &mut [&mut [f32]; N]) -> Self {
         let len = inputs[0].len();
@@ -84,7 +85,7 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
         columns
     }
 
-    /// The columns from row `first` on.
+    /// Returns the columns from row `first` on.
     #[inline(always)]
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     fn after(&self, first: usize) -> Self {
@@ -101,11 +102,11 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
         columns
     }
 
-    /// Calls `run` with the rows from `done` on and their number of packets of `W`, if there are any. Returns the number of rows
-    /// done.
+    /// Calls `run` with the rows from `done` on and with the number of their packets of `W`, if there are any. Returns the number of
+    /// rows done.
     ///
-    /// The rest is less than a packet. If it is more than half of one, the last packet of rows is computed as well: a row is the
-    /// same wherever it is computed.
+    /// The rest is less than a packet. If the rest is more than half of a packet, the last packet of rows is computed as well, which
+    /// repeats some rows: a row is the same wherever it is computed.
     #[inline(always)]
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     pub(crate) fn in_packets<const W: usize>(
@@ -124,8 +125,8 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
         self.len
     }
 
-    /// Calls `run` with columns and the first of eight rows, for the rows from `done` on. The last eight include rows that are done
-    /// already; less than eight rows in all are copied to lanes 0 on.
+    /// Calls `run` with columns and the first of eight rows, for the rows from `done` on. The last eight rows include some that are
+    /// done already. Fewer than eight rows in all are copied to the lanes from 0 on.
     #[inline(always)]
     pub(crate) fn in_eights(&self, done: usize, run: impl Fn(&Columns<'_, I, N>, usize)) {
         let len = self.len;
@@ -166,9 +167,9 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
         }
     }
 
-    /// Computes packets of `W` rows from the first row on. The loop has no branch but its own, unless columns may be left out: the
-    /// compiler would move the computation of a result past a branch that decides on its being written, and with it all of one
-    /// packet of a pair before the other.
+    /// Computes packets of `W` rows from the first row on. The loop has no branch but its own, unless columns may be left out. The
+    /// compiler would move the computation of a result past a branch that decides whether the result is written, and thus compute
+    /// all of one packet of a pair before the other.
     ///
     /// # Safety
     ///
@@ -233,7 +234,7 @@ unsafe fn copy(from: *const f32, to: *mut f32, len: usize) {
     }
 }
 
-/// Copies the first `HALF` of `rest + HALF` numbers, and the last. A loop, and the system's copy all the more, costs several
+/// Copies the first `HALF` of `rest + HALF` numbers, and the last `HALF`. A loop, and even more so the system's copy, costs several
 /// times as much.
 ///
 /// # Safety
@@ -248,7 +249,7 @@ unsafe fn copy_halves<const HALF: usize>(from: *const f32, to: *mut f32, rest: u
     }
 }
 
-/// Copies the first of `from` to `to`, as many as both have, at most 8.
+/// Copies the first numbers of `from` to `to`: as many as both have, at most 8.
 #[inline(always)]
 pub(crate) fn copy_few(from: &[f32], to: &mut [f32]) {
     let len = from.len().min(to.len()).min(8);

@@ -1,7 +1,7 @@
-//! The floating-point control register of x86-64, for tests: rounding, denormals, and flags of exceptions.
+//! Floating-point control register of x86-64, for tests: rounding, denormals, and flags of exceptions.
 #![allow(unsafe_code, reason = "the register has no safe access")]
 
-/// Its bits; 0 on other targets.
+/// Returns the bits of the control register, and 0 on targets other than x86-64.
 #[inline(never)]
 #[must_use]
 pub fn control() -> u32 {
@@ -18,7 +18,7 @@ pub fn control() -> u32 {
     register
 }
 
-/// Sets rounding, denormals and flags; exceptions stay masked. What writes memory stays on its side of it.
+/// Sets rounding, denormals and flags; exceptions stay masked. The compiler moves no write to memory across the call.
 #[inline(never)]
 pub fn set_control(register: u32) {
     let register = register | 0x1f80;

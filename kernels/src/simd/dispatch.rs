@@ -23,7 +23,7 @@ cpufeatures::new!(avx, "avx");
 
 /// Zeroes the upper halves of the vector registers, before code of a plain build.
 ///
-/// A host may call with them dirty (code for AVX ought to end in `vzeroupper`, and some does not). Every legacy SSE
+/// A host may call with dirty upper halves (code for AVX ought to end in `vzeroupper`, and some does not). Every legacy SSE
 /// instruction then merges with the upper half of its register, or the first one saves all of them, for 120 ns.
 #[inline(always)]
 pub(crate) fn clean_upper_halves() {
@@ -46,7 +46,7 @@ pub(crate) fn clean_upper_halves() {
     }
 }
 
-/// An instruction set that this CPU has: a value is the proof.
+/// Instruction set that this CPU has; a value is proof that the instructions exist.
 ///
 /// ```
 /// use hairis::simd::Level;
@@ -66,7 +66,7 @@ enum Kind {
 }
 
 impl Level {
-    /// The best level of this CPU. Detected once; later calls are a load and a compare.
+    /// Returns the best level of this CPU. The level is detected once; later calls are a load and a compare.
     #[inline(always)]
     #[must_use]
     pub fn detect() -> Self {
@@ -82,14 +82,14 @@ impl Level {
         Self::portable()
     }
 
-    /// Eight lanes through `wide`, in the instruction set that the program was compiled for.
+    /// Returns the level of eight lanes through `wide`, in the instruction set that the program was compiled for.
     #[inline(always)]
     #[must_use]
     pub const fn portable() -> Self {
         Self(Kind::Portable)
     }
 
-    /// Every level of this CPU, the portable one first and the best one last.
+    /// Returns every level of this CPU, with the portable level first and the best level last.
     #[inline]
     pub fn available() -> impl Iterator<Item = Self> {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -102,7 +102,7 @@ impl Level {
         core::iter::once(Self::portable()).chain(more.into_iter().flatten())
     }
 
-    /// Name of the instruction set, for reports: `avx2+fma`, `avx512`, or what the program was compiled for.
+    /// Returns the name of the instruction set, for reports: `avx2+fma`, `avx512`, or the one that the program was compiled for.
     #[inline]
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -115,7 +115,7 @@ impl Level {
         }
     }
 
-    /// Whether `mul_add` rounds once on this level. Levels that agree in this give the same bits.
+    /// Returns true if `mul_add` rounds once on this level. Levels for which `fuses` is equal give the same bits.
     #[inline]
     #[must_use]
     pub const fn fuses(self) -> bool {
@@ -127,7 +127,7 @@ impl Level {
     }
 }
 
-/// The instruction set that `wide` was compiled for.
+/// Name of the instruction set that `wide` was compiled for.
 const PORTABLE: &str = if cfg!(all(target_feature = "avx", target_feature = "fma")) {
     "wide (avx+fma)"
 } else if cfg!(target_feature = "avx") {
@@ -149,7 +149,7 @@ impl fmt::Display for Level {
     }
 }
 
-/// Work of [`Level::run`] on eight lanes, whatever their backend.
+/// Computation over eight lanes of any backend, for [`Level::run`].
 ///
 /// ```
 /// use hairis::simd::f32x8;
@@ -172,15 +172,15 @@ impl fmt::Display for Level {
 /// assert!((angles.to_array()[7] - core::f32::consts::FRAC_PI_4).abs() < 1e-6);
 /// ```
 pub trait Kernel {
-    /// Its result.
+    /// Result of the computation.
     type Output;
 
-    /// Whether to compile for the registers of AVX-512. With twice as many, evaluation and sampling gain 5 %; a kernel
-    /// that mostly writes loses 25 %.
+    /// True if the kernel is compiled for the registers of AVX-512. With twice as many registers, evaluation and sampling gain 5 %,
+    /// while a kernel that mostly writes loses 25 %.
     const MANY_REGISTERS: bool = true;
 
-    /// Runs it on the lanes `L`. Mark it `#[inline(always)]`, and all it calls: the dispatched function then contains
-    /// no call.
+    /// Computes the result on the lanes `L`. Mark this function and every function it calls `#[inline(always)]`, so that the
+    /// dispatched function contains no call.
     fn run<L: Lanes<Stored = f32x8>>(self) -> Self::Output;
 }
 
@@ -190,22 +190,22 @@ fn run_avx2<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Avx2>()
 }
 
-// Packets of eight are of AVX2 here, too, compiled for twice the registers.
+// Packets of eight use AVX2 here, too, compiled for twice the registers.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 #[target_feature(enable = "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw")]
 fn run_avx512<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Avx2>()
 }
 
-// Inlined, as a call costs 4 to 20 % more instructions. In tests, which take longer to compile than to run, each caller would hold a
-// copy of the model in every codegen unit.
+// Inlined, because a call costs 4 to 20 % more instructions. Not in tests, which take longer to compile than to run: there each
+// caller would hold a copy of the model in every codegen unit.
 #[cfg_attr(debug_assertions, inline(never))]
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn run_portable<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Portable<FUSES>>()
 }
 
-/// The rows of an instruction set.
+/// Functions that compute the rows of an instruction set.
 macro_rules! rows {
     ($($(#[$meta:meta])* $name:ident $method:ident $Lanes:ty, $W:literal;)*) => { $(
         $(#[$meta])*
@@ -216,15 +216,15 @@ macro_rules! rows {
     )* };
 }
 rows! {
-    /// As [`run_portable`].
+    /// Inlined like [`run_portable`].
     #[cfg_attr(debug_assertions, inline(never))]
     #[cfg_attr(not(debug_assertions), inline(always))]
     eight_portable packet Portable<FUSES>, 8;
 }
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 rows! {
-    /// One packet, what is left of longer ones or all of a short slice. It has no loop, before which the compiler would expand
-    /// all constants in memory.
+    /// Computes one packet: the rest of a longer slice, or all of a short one. It has no loop, before which the compiler would
+    /// expand all constants in memory.
     #[target_feature(enable = "avx2,fma")]
     eight_avx2 packet Avx2, 8;
     #[target_feature(enable = "avx2,fma")]
@@ -238,13 +238,13 @@ rows! {
 }
 
 impl Level {
-    /// Runs `kernel` on eight lanes of this instruction set.
+    /// Runs `kernel` on eight lanes of this instruction set, and returns its output.
     #[inline(always)]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         self.run_into(kernel, |output| output)
     }
 
-    /// Runs `kernel`, and wraps its output: in each branch, so that the output is written where the result goes.
+    /// Runs `kernel` and wraps its output, in each branch, so that the output is written to the place of the result.
     #[inline(always)]
     pub(crate) fn run_into<K: Kernel, T>(self, kernel: K, wrap: impl Fn(K::Output) -> T) -> T {
         match self.0 {
@@ -261,10 +261,10 @@ impl Level {
         }
     }
 
-    /// Runs `row` over columns: `I` numbers in, `N` out. Nothing is written unless all columns are of one length; where they are
-    /// [`OPTIONAL`](Row::OPTIONAL), those of another length than the first input are left out.
+    /// Runs `row` over columns, with `I` numbers in and `N` out. Unless all columns are of one length, nothing is written. If
+    /// columns are [`OPTIONAL`](Row::OPTIONAL), those that differ in length from the first input are left out instead.
     ///
-    /// Rows are computed in packets as wide as the instruction set has them, two at a time, and the rest in narrower ones.
+    /// Rows are computed in packets as wide as the instruction set allows, two at a time, and the rest in narrower packets.
     #[inline]
     pub fn run_rows<R: Row<I, N>, const I: usize, const N: usize>(
         self,

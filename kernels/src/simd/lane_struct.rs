@@ -1,14 +1,13 @@
-//! Structs of lanes: constants of a material or of a shading point, as one number each or as one
-//! per lane.
+//! Structs of lanes: constants of a material or of a shading point, as one number each or as one number per lane.
 
 use super::lanes::{Broadcast, Lanes, Scalar};
 use core::fmt::{self, Debug};
 use wide::f32x8;
 
-/// A number, an array of it, or a struct of both, as [`lane_struct!`](crate::simd::lane_struct)
-/// declares it: eight of one lane are one of eight.
+/// Number, array of numbers, or struct of both, as [`lane_struct!`](crate::simd::lane_struct) declares it. Eight structs of one lane
+/// pack into one struct of eight lanes.
 ///
-/// [`visit`](Self::visit) and [`make`](Self::make) flatten it, for hosts that keep its numbers in arrays:
+/// [`visit`](Self::visit) and [`make`](Self::make) flatten and rebuild the struct, for hosts that keep its numbers in arrays:
 ///
 /// ```
 /// use hairis::simd::{LaneStruct, Path, lane_struct};
@@ -30,24 +29,23 @@ use wide::f32x8;
 /// assert_eq!(Bells::make(&Path::Root, &mut |_| next.next().unwrap()), bells);
 /// ```
 pub trait LaneStruct: Copy + Debug + Send + Sync + 'static {
-    /// Its numbers.
+    /// Type of the numbers in the struct.
     type Number: Scalar;
-    /// The struct of one lane.
+    /// Struct of one lane: the same fields with one number each.
     type One;
-    /// The struct of eight.
+    /// Struct of eight lanes: the same fields with one number per lane.
     type Eight;
-    /// Builds it at `path` from the numbers that `next` returns for each place, in order of
-    /// declaration.
+    /// Builds the struct at `path` from the numbers that `next` returns for each place, in order of declaration.
     fn make(path: &Path<'_>, next: &mut dyn FnMut(&Path<'_>) -> Self::Number) -> Self;
     /// Calls `see` with each place below `path` and its number, in order of declaration.
     fn visit(&self, path: &Path<'_>, see: &mut dyn FnMut(&Path<'_>, Self::Number));
     /// Packs eight structs into one: lane `i` holds the numbers of `items[i]`.
     fn pack(items: [&Self::One; 8]) -> Self::Eight;
-    /// The numbers of one lane, 0 to 7.
+    /// Returns the numbers of one lane, 0 to 7.
     fn lane(eight: &Self::Eight, lane: usize) -> Self::One;
 }
 
-/// Place of a number in a struct of lanes. Displayed as in Rust: `view.shift[2]`.
+/// Place of a number in a struct of lanes, which is displayed as in Rust: `view.shift[2]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Path<'a> {
     /// The whole struct.
@@ -116,8 +114,7 @@ impl<T: LaneStruct, const N: usize> LaneStruct for [T; N] {
     }
 }
 
-/// Numbers, arrays and structs in the storage of `L`: one number for all lanes becomes one per
-/// lane.
+/// Conversion of numbers, arrays and structs to the storage of `L`: one number for all lanes becomes one number per lane.
 #[doc(hidden)]
 pub trait Spread<L: Lanes> {
     type Stored: Copy;
@@ -137,7 +134,7 @@ impl<L: Lanes, T: Spread<L>, const N: usize> Spread<L> for [T; N] {
     #[inline(always)]
     fn spread(&self) -> [T::Stored; N] {
         let mut stored = [self[0].spread(); N];
-        // Without a loop where arrays are short: compilers that save space leave it one.
+        // Without a loop where arrays are short, because compilers that optimise for size keep loops.
         macro_rules! each {
             ($($i:literal)*) => { $(
                 if const { $i < N } {

@@ -1,10 +1,9 @@
-//! SIMD vector trait in which every model is written: one lane (`f32`), or eight.
+//! SIMD vector trait in which every model is written, over one lane (`f32`) or eight.
 //!
-//! A lane is one sample of one shading point, or one of eight shading points, as the caller has it:
-//! models never mix lanes. [`Lanes`] has arithmetic and masks, [`Choice`] the choice of one of
-//! four, and [`Schedule`] the hints for a compiler, so that a model compiles to the same straight
-//! line of instructions on every backend. All are public for models to be written over them, and
-//! sealed.
+//! A lane is one sample of one shading point, or one of eight shading points, as the caller decides; models never mix lanes.
+//! [`Lanes`] has arithmetic and masks, and [`Choice`] selects one of four numbers. [`Schedule`] has hints for a compiler, so that a
+//! model compiles to the same straight line of instructions on every backend. All three are sealed, and public so that models can be
+//! written over them.
 //!
 //! Comparisons are false for NaN. `min` and `max` return their second operand when either is NaN,
 //! as the machine does, so that one `min` at the end of a model turns a NaN into its bound.
@@ -17,19 +16,19 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use wide::{f32x8, i32x8};
 
 pub(crate) mod sealed {
-    /// Keeps the backends in this crate.
+    /// Supertrait that keeps the backends in this crate.
     pub trait Sealed {}
 }
 
-/// Entry of a struct of lanes: one number, or one per lane. Sealed.
+/// Entry of a struct of lanes: one number, or one number per lane. Sealed.
 pub trait Scalar: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
-    /// Form in which a [`Table`] of it is kept.
+    /// Storage form of a [`Table`] of this type.
     #[doc(hidden)]
     type Table: Storage<Self>;
 }
 
-/// One number per lane, with the arithmetic that models are written in. The same number for all
-/// lanes is a float: `x * 0.5 + 1.0`.
+/// One number per lane, with the arithmetic that models are written in. A number that is the same for all lanes is a float:
+/// `x * 0.5 + 1.0`.
 pub trait Lanes:
     Scalar
     + Schedule
@@ -48,99 +47,99 @@ pub trait Lanes:
     type Index: Choice<Self>;
     /// Storage of the lanes between calls: `f32` for one, `wide::f32x8` for eight.
     type Stored: Broadcast<Self>;
-    /// Whether [`mul_add`](Self::mul_add) rounds once.
+    /// True if [`mul_add`](Self::mul_add) rounds once.
     const FUSES: bool;
 
     /// Repeats a number in every lane.
     fn splat(x: f32) -> Self;
-    /// The lanes in their storage form.
+    /// Returns the lanes in their storage form.
     fn store(self) -> Self::Stored;
-    /// The lanes of a storage form: [`Broadcast::lanes`] calls it.
+    /// Loads lanes from their storage form: [`Broadcast::lanes`] calls it.
     fn load(stored: &Self::Stored) -> Self;
-    /// As [`load`](Self::load), for numbers that may just have been written: see
-    /// [`Broadcast::fresh_lanes`].
+    /// Loads lanes like [`load`](Self::load), for numbers that may just have been written: see [`Broadcast::fresh_lanes`].
     #[inline(always)]
     fn load_fresh(stored: &Self::Stored) -> Self {
         Self::load(stored)
     }
-    /// `self * a + b`, rounded once where the backend fuses and twice where it does not.
+    /// Computes `self * a + b`, rounded once where the backend fuses and twice where it does not.
     #[must_use]
     fn mul_add(self, a: Self, b: Self) -> Self;
-    /// `self * a - b`, rounded as [`mul_add`](Self::mul_add).
+    /// Computes `self * a - b`, rounded like [`mul_add`](Self::mul_add).
     #[must_use]
     fn mul_sub(self, a: Self, b: Self) -> Self;
-    /// `a * b - c * d`, to within two units in the last place however much it cancels.
+    /// Computes `a * b - c * d`, to within two units in the last place however much cancels.
     ///
-    /// Backends that fuse recover the rounding error of a product; others split the factors. The difference of two plain
-    /// products loses every digit that cancels.
+    /// Backends that fuse recover the rounding error of a product; others split the factors. The difference of two plain products
+    /// would lose every digit that cancels.
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
-    /// `a / b`. Of two `/` on one lane a compiler may make one division of four lanes, and the unused ones raise exceptions.
+    /// Computes `a / b`. From two `/` on one lane a compiler may make one division of four lanes, whose unused lanes raise
+    /// exceptions.
     #[inline(always)]
     #[must_use]
     fn quotient(a: Self, b: Self) -> Self {
         (a / b).alone()
     }
-    /// Square root, correctly rounded.
+    /// Computes the square root, correctly rounded.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// Magnitude.
+    /// Returns the magnitude of each lane.
     #[must_use]
     fn abs(self) -> Self;
-    /// `if self < other { self } else { other }`: NaN on either side gives `other`.
+    /// Returns `if self < other { self } else { other }`: NaN on either side gives `other`.
     #[must_use]
     fn min(self, other: Self) -> Self;
-    /// `if self > other { self } else { other }`: NaN on either side gives `other`.
+    /// Returns `if self > other { self } else { other }`: NaN on either side gives `other`.
     #[must_use]
     fn max(self, other: Self) -> Self;
-    /// `self` with its sign turned where that of `sign` is set.
+    /// Returns `self` with its sign flipped where the sign of `sign` is set.
     #[must_use]
     fn times_sign(self, sign: Self) -> Self;
-    /// `-x` where the mask is set, `x` elsewhere.
+    /// Returns `-x` where the mask is set and `x` elsewhere.
     fn negate(mask: Self::Mask, x: Self) -> Self;
-    /// The bits of each lane, as an integer, shifted left by 23: builds a power of two from a biased exponent.
+    /// Shifts the bits of each lane, as an integer, left by 23, which builds a power of two from a biased exponent.
     #[must_use]
     fn bits_shl_23(self) -> Self;
-    /// `(m, e)` with `self = m 2^e`, `m` in `[sqrt(1/2), sqrt(2))` and `e` an integer: for normal numbers above 0. Any
-    /// other gives finite numbers or NaN.
+    /// Splits a normal number above 0 into `(m, e)` with `self = m 2^e`, `m` in `[sqrt(1/2), sqrt(2))` and `e` an integer. Any other
+    /// number gives finite numbers or NaN.
     #[must_use]
     fn split_exponent(self) -> (Self, Self);
-    /// `2^self`, where the target has it: on GPUs alone.
+    /// Computes `2^self` where the target has an instruction for it, which only GPUs have.
     #[doc(hidden)]
     #[inline(always)]
     #[must_use]
     fn native_exp2(self) -> Option<Self> {
         None
     }
-    /// The logarithm to the base 2, where the target has it.
+    /// Computes the logarithm to the base 2 where the target has an instruction for it.
     #[doc(hidden)]
     #[inline(always)]
     #[must_use]
     fn native_log2(self) -> Option<Self> {
         None
     }
-    /// Says what the operations that follow compute, to lanes that record: a comment in generated source.
+    /// Describes, to lanes that record, what the operations that follow compute: a comment in generated source.
     #[inline(always)]
     fn stage(_sentence: &'static str) {}
-    /// `self < other`, false for NaN.
+    /// Returns the mask of `self < other`, false for NaN.
     fn lt(self, other: Self) -> Self::Mask;
-    /// Both masks.
+    /// Returns the mask of lanes that are set in both masks.
     fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// Either mask.
+    /// Returns the mask of lanes that are set in either mask.
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// `yes` where the mask is set, `no` elsewhere.
+    /// Returns `yes` where the mask is set and `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// [`select`](Self::select) by a mask that is nearly always the same. One lane branches: what follows does not wait for the mask, and
-    /// what is not selected is not computed.
+    /// Selects like [`select`](Self::select), by a mask that is nearly always the same. One lane branches, so that the code that
+    /// follows does not wait for the mask, and the number that is not selected is not computed.
     #[inline(always)]
     #[must_use]
     fn select_predictable(mask: Self::Mask, yes: Self, no: Self) -> Self {
         Self::select(mask, yes, no)
     }
-    /// `(a, b)` where the mask is set, `(b, a)` elsewhere.
+    /// Returns `(a, b)` where the mask is set and `(b, a)` elsewhere.
     fn swap(mask: Self::Mask, a: Self, b: Self) -> (Self, Self);
-    /// `x` where the mask is set, 0 elsewhere.
+    /// Returns `x` where the mask is set and 0 elsewhere.
     fn keep(mask: Self::Mask, x: Self) -> Self;
-    /// The four numbers of a row per lane: for eight lanes.
+    /// Transposes the four numbers of a row per lane into four vectors, for eight lanes.
     #[doc(hidden)]
     #[inline(always)]
     #[must_use]
@@ -149,25 +148,26 @@ pub trait Lanes:
     }
 }
 
-/// Storage of lanes: one number for all of them, or one per lane.
+/// Storage of lanes: one number for all lanes, or one number per lane.
 ///
 /// A model reads its constants through this trait, so that one source serves eight directions at one shading point
 /// (constants in `f32`) and eight shading points (constants in `f32x8`).
 pub trait Broadcast<L: Lanes>: Scalar {
-    /// The number of each lane.
+    /// Loads the number of each lane.
     fn lanes(&self) -> L;
-    /// As [`lanes`](Self::lanes), for numbers that the caller may just have stored lane by lane.
-    /// Loading them in two halves avoids a store-forwarding stall of about 15 cycles.
+    /// Loads lanes like [`lanes`](Self::lanes), for numbers that the caller may just have stored lane by lane. Loading them in two
+    /// halves avoids a store-forwarding stall of about 15 cycles.
     #[inline(always)]
     fn fresh_lanes(&self) -> L {
         self.lanes()
     }
-    /// The entry of each lane's index.
+    /// Returns, for each lane, the entry at the lane's index.
     #[inline(always)]
     fn look_up(table: &[Self; 4], index: L::Index) -> L {
         index.choose(lanes4(table))
     }
-    /// Four numbers of the entry of each lane's index, and 4 more where `upper` is set: see [`Choice::look_up_four`].
+    /// Returns four numbers of the entry at each lane's index, which counts 4 more where `upper` is set: see
+    /// [`Choice::look_up_four`].
     #[doc(hidden)]
     #[inline(always)]
     fn look_up_four(table: &Table<Self>, index: L::Index, upper: L::Mask, four: usize) -> [L; 4] {
@@ -183,12 +183,13 @@ pub trait Broadcast<L: Lanes>: Scalar {
         }
         found
     }
-    /// The entry of each lane's index, of a table whose last two entries are equal: for less.
+    /// Returns the entry at each lane's index, of a table whose last two entries are equal, in less time than
+    /// [`look_up`](Self::look_up).
     #[inline(always)]
     fn look_up_three(table: &[Self; 4], index: L::Index) -> L {
         index.choose_three([table[0].lanes(), table[1].lanes(), table[2].lanes()])
     }
-    /// The entry of half of each lane's index: the first for 0 and 1, the second for 2 and 3.
+    /// Returns the entry at half of each lane's index: the first entry for 0 and 1, the second for 2 and 3.
     #[inline(always)]
     fn look_up_half(table: &[Self; 2], index: L::Index) -> L {
         index.choose_half([table[0].lanes(), table[1].lanes()])
@@ -229,10 +230,10 @@ impl<L: Lanes<Stored = f32x8>> Broadcast<L> for f32x8 {
     }
     #[inline(always)]
     fn look_up_four(table: &Table<Self>, index: L::Index, upper: L::Mask, four: usize) -> [L; 4] {
-        // Through numbers. From masks and integers, in as many instructions, a packet of eight materials took a twentieth longer:
-        // LLVM then computes what the index is made of last, and nothing is left to do meanwhile.
+        // Through numbers, because with masks and integers, in as many instructions, a packet of eight materials took a twentieth
+        // longer: LLVM then computes the parts of the index last, and nothing is left to do meanwhile.
         let offset = L::select(upper, L::splat(4.0), L::splat(0.0));
-        // The index is below 8: said here, for all lanes at once, it need not be checked for each.
+        // The index is below 8. Masking it here, for all lanes at once, removes the bounds check of each lane.
         const SEVEN: i32x8 = i32x8::new([7; 8]);
         let number = (index.to_number() + offset).store().fast_trunc_int() & SEVEN;
         let [i, j, k, l, m, n, o, p] = number.to_array();
@@ -250,60 +251,60 @@ impl<L: Lanes<Stored = f32x8>> Broadcast<L> for f32x8 {
     }
 }
 
-/// `W` lanes that are read from as many numbers in a row, of any alignment, and written to them.
+/// Lanes that are read from `W` consecutive numbers of any alignment, and written to them.
 pub(crate) trait Packet<const W: usize>: Lanes {
-    /// Reads the numbers.
+    /// Reads the numbers as lanes.
     fn read(from: &[f32; W]) -> Self;
     /// Reads numbers that may just have been written: see [`Broadcast::fresh_lanes`].
     #[inline(always)]
     fn read_fresh(from: &[f32; W]) -> Self {
         Self::read(from)
     }
-    /// Writes the numbers.
+    /// Writes the lanes as numbers.
     fn write(self, to: &mut [f32; W]);
 }
 
-/// The three numbers of `x`, read as lanes.
+/// Loads the three numbers of `x` as lanes.
 #[inline(always)]
 pub fn lanes3<L: Lanes, C: Broadcast<L>>(x: &[C; 3]) -> [L; 3] {
     [x[0].lanes(), x[1].lanes(), x[2].lanes()]
 }
 
-/// The three numbers of `x`, which may just have been written, read as lanes.
+/// Loads the three numbers of `x`, which may just have been written, as lanes.
 #[inline(always)]
 pub(crate) fn fresh_lanes3<L: Lanes, C: Broadcast<L>>(x: &[C; 3]) -> [L; 3] {
     [x[0].fresh_lanes(), x[1].fresh_lanes(), x[2].fresh_lanes()]
 }
 
-/// The four numbers of `x`, read as lanes.
+/// Loads the four numbers of `x` as lanes.
 #[inline(always)]
 pub fn lanes4<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> [L; 4] {
     [x[0].lanes(), x[1].lanes(), x[2].lanes(), x[3].lanes()]
 }
 
-/// The three lanes of `x` in their storage form.
+/// Returns the three lanes of `x` in their storage form.
 #[inline(always)]
 pub fn store3<L: Lanes>(x: [L; 3]) -> [L::Stored; 3] {
     [x[0].store(), x[1].store(), x[2].store()]
 }
 
-/// The four lanes of `x` in their storage form.
+/// Returns the four lanes of `x` in their storage form.
 #[inline(always)]
 pub fn store4<L: Lanes>(x: [L; 4]) -> [L::Stored; 4] {
     [x[0].store(), x[1].store(), x[2].store(), x[3].store()]
 }
 
-/// Offset that [`Lanes::split_exponent`] adds to the bits of a float, so that their biased exponent is that of the power of two
-/// at or below `sqrt(2)` times it: the bits of 1 less those of `sqrt(1/2)`.
+/// Offset that [`Lanes::split_exponent`] adds to the bits of a float, so that the biased exponent becomes that of the power of two
+/// at or below `sqrt(2)` times the float: the bits of 1 less those of `sqrt(1/2)`.
 pub(crate) const ROUND_EXPONENT: u32 = 0x3f80_0000 - 0x3f35_04f3;
-/// The bits of 1: an exponent of 0, biased.
+/// Bits of the float 1, whose biased exponent stands for 0.
 pub(crate) const ONE: u32 = 0x3f80_0000;
-/// The bits of `2^23`: with an integer below it in the low bits they are the sum of both.
+/// Bits of `2^23`: with a smaller integer in the low bits they are the float sum of both.
 pub(crate) const INTEGER: u32 = 0x4b00_0000;
-/// `2^23`, and the bias of an exponent.
+/// Sum of `2^23` and the bias of an exponent.
 pub(crate) const INTEGER_BIAS: f32 = 8_388_608.0 + 127.0;
 
-/// [`Lanes::difference_of_products`] with a fused `mul_add`, after Kahan.
+/// Computes [`Lanes::difference_of_products`] with a fused `mul_add`, after Kahan.
 #[inline(always)]
 pub(crate) fn difference_fused<L: Lanes>(a: L, b: L, c: L, d: L) -> L {
     let product = c * d;
@@ -311,7 +312,7 @@ pub(crate) fn difference_fused<L: Lanes>(a: L, b: L, c: L, d: L) -> L {
     a.mul_sub(b, product) - left_out
 }
 
-/// [`Lanes::difference_of_products`] from the factors and their halves of 12 bits, after Dekker.
+/// Computes [`Lanes::difference_of_products`] from the factors and their halves of 12 bits, after Dekker.
 #[inline(always)]
 pub(crate) fn difference_split<L: Lanes>([a, b, c, d]: [L; 4], halves: [[L; 2]; 4]) -> L {
     let (left, right) = (a * b, c * d);
@@ -319,17 +320,17 @@ pub(crate) fn difference_split<L: Lanes>([a, b, c, d]: [L; 4], halves: [[L; 2]; 
         + (rounding_error(left, halves[0], halves[1]) - rounding_error(right, halves[2], halves[3]))
 }
 
-/// Rounding error of a product of two factors: exact, as the products of halves are.
+/// Computes the rounding error of a product of two factors, which is exact because the products of halves are.
 #[inline(always)]
 fn rounding_error<L: Lanes>(product: L, a: [L; 2], b: [L; 2]) -> L {
     let left_out = ((a[0] * b[0] - product) + a[0] * b[1]) + a[1] * b[0];
     left_out + a[1] * b[1]
 }
 
-/// Bits of the sign, the exponent and the upper 11 of the fraction.
+/// Mask of the sign, the exponent and the upper 11 bits of the fraction.
 pub(crate) const UPPER: u32 = 0xffff_f000;
 
-/// Arithmetic of lanes with the same number for all of them.
+/// Arithmetic of lanes with one number for all lanes.
 macro_rules! by_splat {
     ($Lanes:ty, $generics:tt) => {
         by_splat! { $Lanes, $generics, Add add }

@@ -1,7 +1,7 @@
 //! Two interleaved packets: while one waits for a result, the other computes.
 //!
-//! A sample is a dependency chain of some two hundred cycles; a CPU looks no more than a few hundred instructions ahead
-//! for other work. With two chains interleaved it waits a quarter less.
+//! A sample is a dependency chain of some two hundred cycles, while a CPU looks no more than a few hundred instructions ahead for
+//! other work. With two chains interleaved it waits a quarter less.
 //!
 //! Models interleave equal steps of one packet in the same way, two or four of them.
 
@@ -11,9 +11,10 @@ use super::schedule::Schedule;
 use super::table::{Entries, Shared};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Two packets, or two equal steps of one, as lanes: each instruction for one is followed by that for the other.
+/// Two packets, or two equal steps of one packet, as lanes: each instruction for one is followed by the same instruction for the
+/// other.
 ///
-/// Constants are read once for both, and neither chain of results waits alone. Pairs nest.
+/// Constants are read once for both, and neither chain of results waits alone. Pairs can be nested.
 ///
 /// ```
 /// use hairis::simd::{Lanes, Pair};
@@ -54,7 +55,7 @@ impl<L: Lanes> Neg for Pair<L> {
 impl<L: Lanes> Lanes for Pair<L> {
     type Mask = (L::Mask, L::Mask);
     type Index = (L::Index, L::Index);
-    // Only columns run in pairs: nothing is kept in them between calls.
+    // Only columns run in pairs, which are not kept between calls.
     type Stored = Self;
     const FUSES: bool = L::FUSES;
 
@@ -229,7 +230,7 @@ impl<L: Lanes> Broadcast<Self> for Pair<L> {
     }
 }
 
-/// Reads and writes pairs as twice as many numbers in a row.
+/// Reads and writes pairs as twice as many consecutive numbers.
 macro_rules! packet {
     ($($half:literal $whole:literal;)*) => { $(
         impl<L: Packet<$half>> Packet<$whole> for Pair<L> {

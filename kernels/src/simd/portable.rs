@@ -1,7 +1,7 @@
-//! Eight lanes through `wide`: the instruction set the program was compiled for, whatever the machine has.
+//! Eight lanes through `wide`, in the instruction set that the program was compiled for, whatever the machine has.
 //!
-//! [`Portable`] is the backend of [`Level::portable`](crate::simd::Level::portable). `f32x8` itself never fuses: what is
-//! computed without a level has the same bits in every build.
+//! [`Portable`] is the backend of [`Level::portable`](crate::simd::Level::portable). `f32x8` itself never fuses, so that results
+//! computed without a level have the same bits in every build.
 
 #![allow(
     unsafe_code,
@@ -18,7 +18,7 @@ use super::table::{Entries, Rows, Shared};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 use wide::{f32x4, f32x8, u32x8};
 
-/// Whether `wide`'s `mul_add` rounds once in this build.
+/// True if `mul_add` of `wide` rounds once in this build.
 pub(crate) const FUSES: bool = cfg!(any(
     target_feature = "fma",
     all(target_arch = "aarch64", target_feature = "neon")
@@ -28,9 +28,9 @@ pub(crate) const FUSES: bool = cfg!(any(
 ///
 /// - Effect: an empty `asm!` block that LLVM must assume reads and writes the numbers, so that it computes all of them before it
 ///   uses one. Emits no instruction. Miri runs no assembly, and goes without.
-/// - Measured: slices of hits that conserve energy took 1.20 times those that do not; 1.24 with the barrier after transposed
-///   numbers alone, where LLVM otherwise makes each number by shuffles of its own, and 1.29 with none (AMD Zen 3, SSE2, at the
-///   commit that brought it).
+/// - Measured: slices of hits that conserve energy took 1.20 times as long as those that do not. With the barrier after transposed
+///   numbers alone, where LLVM otherwise makes each number by shuffles of its own, it was 1.24 times, and without any barrier 1.29
+///   times (AMD Zen 3, SSE2, at the commit that introduced it).
 /// - Measure again: return `four` in its place, and compare `cargo bench -p hairis-benches --bench hits`.
 #[inline(always)]
 fn together(four: [f32x4; 4]) -> [f32x4; 4] {
@@ -57,7 +57,7 @@ fn together(four: [f32x4; 4]) -> [f32x4; 4] {
     four
 }
 
-/// The four numbers of each of four rows, row `i` in lane `i`.
+/// Transposes the first four numbers of four rows: row `i` goes to lane `i`.
 #[inline(always)]
 fn transposed([a, b, c, d]: [&[f32; 4]; 4]) -> [f32x4; 4] {
     together(f32x4::transpose([
@@ -68,7 +68,7 @@ fn transposed([a, b, c, d]: [&[f32; 4]; 4]) -> [f32x4; 4] {
     ]))
 }
 
-/// The first four lanes, and the last.
+/// Splits eight lanes into the first four and the last four.
 #[cfg(all(
     target_arch = "x86_64",
     target_feature = "sse2",
@@ -80,7 +80,7 @@ fn split_halves(lanes: f32x8) -> [f32x4; 2] {
     [f32x4::new([a, b, c, d]), f32x4::new([e, f, g, h])]
 }
 
-/// Four lanes, and four more.
+/// Joins four lanes and four more.
 #[inline(always)]
 fn both(low: f32x4, high: f32x4) -> f32x8 {
     let ([a, b, c, d], [e, f, g, h]) = (low.to_array(), high.to_array());
@@ -91,10 +91,10 @@ fn both(low: f32x4, high: f32x4) -> f32x8 {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Portable<const FUSE: bool>(pub(crate) f32x8);
 
-/// Eight lanes whose `mul_add` rounds twice, as that of one lane does.
+/// Eight lanes whose `mul_add` rounds twice, like that of one lane.
 pub(crate) type Unfused = Portable<false>;
 
-/// A type that holds eight lanes of this build.
+/// Type that holds eight lanes of this build.
 trait Eight: Copy {
     fn wrap(lanes: f32x8) -> Self;
     fn unwrap(self) -> f32x8;
@@ -122,15 +122,14 @@ impl<const FUSE: bool> Eight for Portable<FUSE> {
     }
 }
 
-/// Masks of the sign, and of everything but the sign.
+/// Mask of the sign bit.
 const SIGN: f32x8 = f32x8::new([-0.0; 8]);
 const MAGNITUDE: f32x8 = f32x8::new([f32::from_bits(0x7fff_ffff); 8]);
 
-/// Repeats a number in every lane. The operators of `f32x8` with a float do without it, those of
-/// [`Portable`] do not.
+/// Repeats a number in every lane. The operators of `f32x8` with a float need no such function, but those of [`Portable`] do.
 ///
-/// `wide` fills an array, which the compiler leaves a loop over memory where it saves space: a packet took three to ten
-/// times as long at opt-level s.
+/// `wide` fills an array in a loop over memory, which compilers that optimise for size keep: a packet took three to ten times as
+/// long at opt-level s.
 #[inline(always)]
 fn splat(x: f32) -> f32x8 {
     #[cfg(all(
@@ -179,7 +178,7 @@ fn splat(x: f32) -> f32x8 {
     f32x8::new([x, x, x, x, x, x, x, x])
 }
 
-/// The upper half of the digits, and the rest.
+/// Splits a number into the upper half of its digits and the rest.
 #[inline(always)]
 fn split<P: Eight>(x: P) -> [P; 2] {
     const MASK: u32x8 = u32x8::new([UPPER; 8]);
@@ -210,7 +209,7 @@ impl<const FUSE: bool> Neg for Portable<FUSE> {
     }
 }
 
-/// The lanes of a type that holds eight of this build.
+/// Implements the lanes of a type that holds eight lanes of this build.
 macro_rules! eight_lanes {
     ($Lanes:ty, [$($generics:tt)*], $fuses:expr, $Table:ty) => {
         impl<$($generics)*> Sealed for $Lanes {}
@@ -388,7 +387,7 @@ macro_rules! eight_lanes {
             #[inline(always)]
             fn look_up_four(self, upper: f32x8, table: &Shared, four: usize) -> [$Lanes; 4] {
                 const FOUR: u32x8 = u32x8::new([4; 8]);
-                // The index is below 8: said here, for all lanes at once, it need not be checked for each.
+                // The index is below 8. Masking it here, for all lanes at once, removes the bounds check of each lane.
                 const SEVEN: u32x8 = u32x8::new([7; 8]);
                 // A set mask is -1 as an integer.
                 let [one, two, three] = [self[0].to_bits(), self[1].to_bits(), self[2].to_bits()];

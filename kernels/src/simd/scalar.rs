@@ -1,7 +1,7 @@
-//! One lane.
+//! One lane: the backend of scalar calls.
 //!
-//! Selections are marked unpredictable: as branches, which the compiler makes of them here and there, they would be
-//! mispredicted half of the time. Those by a mask that is nearly always the same are branches.
+//! Selections are marked unpredictable, because as branches, which the compiler makes of them here and there, they would be
+//! mispredicted half of the time. Selections by a mask that is nearly always the same are branches.
 
 #![allow(
     unsafe_code,
@@ -23,16 +23,17 @@ impl Scalar for f32 {
     type Table = Shared;
 }
 
-/// The upper half of the digits, and the rest.
+/// Splits a number into the upper half of its digits and the rest.
 #[inline(always)]
 fn split(x: f32) -> [f32; 2] {
     let upper = f32::from_bits(x.to_bits() & UPPER);
     [upper, x - upper]
 }
 
-/// Square root: the instruction. That of `libm` stays a call where the compiler saves space.
+/// Computes the square root by the instruction, because that of `libm` stays a call where the compiler optimises for size.
 ///
-/// In place: written to another register, it would wait for what was there before, which may be a result of the last call.
+/// The result replaces the operand: written to another register, it would wait for the earlier content of that register, which may
+/// be a result of the last call.
 #[inline(always)]
 fn sqrt(x: f32) -> f32 {
     #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(miri)))]
@@ -176,7 +177,7 @@ impl Schedule for f32 {
     // Effect: an empty `asm!` block that LLVM must assume reads and writes the number, so that it
     // does not compute the number as one lane of several. Emits no instruction. Miri runs no
     // assembly, and goes without. Measured: without it, 916 of 1024 samples of `Matched<Gaussian>`
-    // raised an exception in a lane that nobody uses. Measure again: return `self` in its place and
+    // raised an exception in an unused lane. Measure again: return `self` in its place and
     // run `.ci/exceptions.sh`.
     #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(miri)))]
     #[inline(always)]

@@ -1,10 +1,9 @@
-//! Hints for a compiler on the order of instructions: they change no result.
+//! Hints for a compiler on the order of instructions, which change no result.
 
-/// Scheduling barriers. Each returns its operands; a backend that gains nothing from one leaves it
-/// out.
+/// Scheduling barriers. Each returns its operands; a backend that gains nothing from a barrier omits it.
 pub trait Schedule: Sized {
-    /// Barrier after a number, on one lane of x86-64: LLVM computes the number by itself, not as
-    /// one lane of several whose unused ones raise exceptions or hold denormals.
+    /// Barrier after a number, on one lane of x86-64: LLVM computes the number by itself, not as one lane of several whose unused
+    /// lanes raise exceptions or hold denormals.
     #[inline(always)]
     #[must_use]
     fn alone(self) -> Self {
@@ -13,22 +12,22 @@ pub trait Schedule: Sized {
 
     /// Barrier after two numbers, with AVX2: neither is used before both are computed.
     ///
-    /// Compilers tend to emit two dependency chains one after the other, because that takes fewer
-    /// registers. A CPU that looks a hundred instructions ahead then waits for each in turn.
+    /// Compilers tend to emit two dependency chains one after the other, because that order takes fewer registers. A CPU that looks
+    /// a hundred instructions ahead then waits for each chain in turn.
     #[inline(always)]
     fn interleave(a: Self, b: Self) -> (Self, Self) {
         (a, b)
     }
 
-    /// Barrier after three numbers, on x86-64 without AVX: they are computed side by side. Compilers tend to compute each where it
-    /// is used, and keep what it is made of in memory until then.
+    /// Barrier after three numbers, on x86-64 without AVX: the numbers are computed side by side. Compilers tend to compute each
+    /// where it is used, and to keep its operands in memory until then.
     #[inline(always)]
     #[must_use]
     fn together(three: [Self; 3]) -> [Self; 3] {
         three
     }
 
-    /// [`interleave`](Self::interleave) of the two halves of a pair; others are returned unchanged.
+    /// Applies [`interleave`](Self::interleave) to the two halves of a pair; other lanes are returned unchanged.
     #[inline(always)]
     #[must_use]
     fn interleaved(self) -> Self {

@@ -6,20 +6,20 @@ use core::array::from_fn;
 use core::fmt::Debug;
 use wide::f32x8;
 
-/// Entries of a table.
+/// Number of entries of a table.
 pub(crate) const ENTRIES: usize = 8;
-/// Numbers of an entry.
+/// Count of numbers in an entry.
 pub(crate) const NUMBERS: usize = 15;
 
-/// The numbers of each entry.
+/// Numbers of each entry.
 pub(crate) type Entries<C> = [[C; NUMBERS]; ENTRIES];
 
-/// A table for each lane of `C`.
+/// Tables of eight entries, one table for each lane of `C`.
 #[derive(Clone, Copy, Debug)]
 pub struct Table<C: Scalar>(pub(super) C::Table);
 
 impl<C: Scalar> Table<C> {
-    /// The table of these entries.
+    /// Makes the table of these entries.
     #[inline]
     pub(crate) fn new(entries: &Entries<C>) -> Self {
         Self(C::Table::new(entries))
@@ -56,15 +56,15 @@ impl<C: Scalar> LaneStruct for Table<C> {
     }
 }
 
-/// A table in memory.
+/// Representation of a table in memory.
 pub trait Storage<C>: Copy + Debug + Send + Sync + 'static {
-    /// The table of these entries.
+    /// Makes the table of these entries.
     fn new(entries: &Entries<C>) -> Self;
-    /// Entries of the table.
+    /// Returns the entries of the table.
     fn entries(&self) -> Entries<C>;
 }
 
-/// Tables of lanes that choose by selections, or have no constants of materials.
+/// Tables of lanes that select among all entries, or that have no constants of materials.
 impl<C: Scalar> Storage<C> for Entries<C> {
     #[inline]
     fn new(entries: &Self) -> Self {
@@ -76,10 +76,11 @@ impl<C: Scalar> Storage<C> for Entries<C> {
     }
 }
 
-/// Sixteen of what an entry has fifteen of, four by four: the last is 0.
+/// Sixteen numbers, four by four, in place of the fifteen of an entry: the last is 0.
 pub(super) type Fours<T> = [[T; 4]; 4];
 
-/// The entries, each four by four numbers. One lane reads a four of one entry, and eight lanes read a four of eight and transpose them.
+/// Entries of a table, each as four times four numbers. One lane reads four numbers of one entry; eight lanes read four numbers of
+/// eight entries and transpose them.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(16))]
 pub struct Rows(pub(super) [Fours<f32>; ENTRIES]);
@@ -92,19 +93,19 @@ impl Rows {
         self.0
             .map(|fours| from_fn(|number| fours.as_flattened()[number]))
     }
-    /// Four numbers of an entry from 0 to 7.
+    /// Returns four numbers of an entry from 0 to 7.
     #[inline(always)]
     pub(super) fn four(&self, entry: i32, four: usize) -> &[f32; 4] {
         &self.0[entry.cast_unsigned() as usize & (ENTRIES - 1)][four]
     }
 }
 
-/// A number of an entry, 0 beyond its end.
+/// Returns a number of an entry, and 0 beyond its end.
 fn number(entry: &[f32; NUMBERS], number: usize) -> f32 {
     entry.get(number).copied().unwrap_or_default()
 }
 
-/// A table that all lanes share: by entry, and by number, as shuffles choose.
+/// Table that all lanes share, stored by entry and by number, as shuffles read it.
 #[derive(Clone, Copy, Debug)]
 pub struct Shared {
     pub(super) rows: Rows,
@@ -128,7 +129,7 @@ impl Storage<f32> for Shared {
     }
 }
 
-/// A table of each lane, one after the other.
+/// One table per lane, one after the other.
 impl Storage<f32x8> for [Rows; 8] {
     #[inline]
     fn new(entries: &Entries<f32x8>) -> Self {
@@ -152,7 +153,8 @@ mod tests {
     use super::*;
     use crate::simd::{Broadcast, Choice, Kernel, Lanes, Level, Pair};
 
-    /// The four fours of the entries of a number per lane: of its magnitude, and four more where it is above 0.
+    /// Kernel that reads all numbers of an entry per lane: the entry of a number's magnitude, and four entries on where the number
+    /// is above 0.
     struct Find<'a, C: Scalar> {
         x: f32x8,
         table: &'a Table<C>,
@@ -185,7 +187,7 @@ mod tests {
     }
     find! { f32 f32x8 }
 
-    /// Table whose numbers tell table, entry and place.
+    /// Table whose numbers encode table, entry and place.
     fn table(number: usize) -> Table<f32> {
         let place = |entry: usize, place: usize| 1000 * number + 100 * entry + place;
         Table::new(&from_fn(|entry| {

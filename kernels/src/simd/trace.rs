@@ -1,7 +1,7 @@
-//! Lanes that compute nothing: each operation is handed to a recorder, which makes a graph of the model.
+//! Lanes that compute nothing, but pass each operation to a recorder, which makes a graph of the model.
 //!
-//! A model over [`Lanes`] has no control flow that depends on its data. Run once on these lanes it becomes a straight line of
-//! the operations of [`Op`]. Their results have the bits of one lane with [`Exact`], and those of a level that fuses with
+//! A model over [`Lanes`] has no control flow that depends on its data, so that one run on these lanes turns it into a straight line
+//! of the operations of [`Op`]. The results have the bits of one lane with [`Exact`], and the bits of a level that fuses with
 //! [`Fused`].
 
 use super::choice::Choice;
@@ -16,11 +16,11 @@ use core::marker::PhantomData;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 use core::panic::Location;
 
-/// An operation on numbers (32-bit floats) and masks (truth values), which reads up to three results `a`, `b`, `c`.
-/// Comparisons are false for NaN.
+/// Operation on numbers (32-bit floats) and masks (truth values), which reads up to three results `a`, `b`, `c`. Comparisons are
+/// false for NaN.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Op {
-    /// The number of these bits.
+    /// Number whose bits are given.
     Constant(u32),
     /// `a + b`.
     Add,
@@ -30,13 +30,13 @@ pub enum Op {
     Mul,
     /// `a / b`.
     Div,
-    /// `a` with its sign turned.
+    /// `a` with its sign flipped.
     Neg,
-    /// `a * b + c`, rounded once. Recorded by lanes that fuse alone.
+    /// `a * b + c`, rounded once. Only lanes that fuse record it.
     MulAdd,
-    /// `2^a` of the target. Recorded with [`GpuNative`] alone.
+    /// `2^a` of the target. Only [`GpuNative`] records it.
     Exp2,
-    /// Logarithm to the base 2 of the target. Recorded with [`GpuNative`] alone.
+    /// Logarithm to the base 2 of the target. Only [`GpuNative`] records it.
     Log2,
     /// Square root.
     Sqrt,
@@ -46,9 +46,9 @@ pub enum Op {
     Min,
     /// `if a > b { a } else { b }`.
     Max,
-    /// `a` with its sign turned where that of `b` is set.
+    /// `a` with its sign flipped where the sign of `b` is set.
     TimesSign,
-    /// `b` with its sign turned where the mask `a` is set.
+    /// `b` with its sign flipped where the mask `a` is set.
     NegateIf,
     /// The bits of `a`, shifted left by 23.
     ShiftLeft23,
@@ -62,18 +62,18 @@ pub enum Op {
     Less,
     /// The mask `a >= b`.
     AtLeast,
-    /// Both masks.
+    /// Mask of the lanes that are set in both masks.
     And,
-    /// Either mask.
+    /// Mask of the lanes that are set in either mask.
     Or,
-    /// The lanes that are not in the mask `a`.
+    /// Mask of the lanes that are not set in the mask `a`.
     Not,
     /// `b` where the mask `a` is set, `c` elsewhere.
     Select,
 }
 
 impl Op {
-    /// Number of results that the operation reads.
+    /// Returns the number of results that the operation reads.
     #[inline]
     #[must_use]
     pub const fn arity(self) -> usize {
@@ -94,7 +94,7 @@ impl Op {
         }
     }
 
-    /// Whether the result is a mask.
+    /// Returns true if the result of the operation is a mask.
     #[inline]
     #[must_use]
     pub const fn is_mask(self) -> bool {
@@ -104,14 +104,15 @@ impl Op {
         )
     }
 
-    /// Exponent of [`Lanes::split_exponent`], biased, of the bits of a number.
+    /// Returns the biased exponent of [`Lanes::split_exponent`] from the bits of a number.
     #[inline]
     #[must_use]
     pub const fn biased_exponent(bits: u32) -> u32 {
         bits.wrapping_add(ROUND_EXPONENT) >> 23
     }
 
-    /// The operation on a number's bits, for those that read one number and take its bits apart.
+    /// Computes the operation on the bits of a number, or returns `None` for operations that do not take the bits of one number
+    /// apart.
     #[inline]
     #[must_use]
     pub fn of_bits(self, bits: u32) -> Option<f32> {
@@ -128,22 +129,22 @@ impl Op {
     }
 }
 
-/// Receiver of operations, which names their results. The first is told before any that reads it.
+/// Receiver of operations, which names their results. It receives an operation before any operation that reads its result.
 pub trait Recorder: 'static {
-    /// Records the operation `op` on the results named by `args`, of which it reads [`Op::arity`]. `at` is the line of the
-    /// model that asked for it.
+    /// Records the operation `op` on the results named by `args`, of which it reads [`Op::arity`]. `at` is the line of the model
+    /// that called the operation.
     fn record(op: Op, args: [u32; 3], at: &'static Location<'static>) -> u32;
-    /// Receives what the operations that follow compute, as the model says it.
+    /// Receives the model's description of what the operations that follow compute.
     fn stage(sentence: &'static str);
 }
 
-/// The arithmetic of the target that a graph is for. Sealed.
+/// Arithmetic of the target that a graph is for. Sealed.
 pub trait Arithmetic: Sealed + 'static {
-    /// Whether [`Lanes::mul_add`] is one operation.
+    /// True if [`Lanes::mul_add`] is one operation.
     const FUSES: bool;
-    /// Whether that operation rounds once on every target: Kahan's difference of products relies on it.
+    /// True if that operation rounds once on every target, which Kahan's difference of products relies on.
     const ROUNDS_ONCE: bool;
-    /// Whether powers and logarithms to the base 2 are those of the target.
+    /// True if powers and logarithms to the base 2 are computed by the target.
     const NATIVE: bool;
 }
 
@@ -162,26 +163,26 @@ macro_rules! arithmetics {
     )* };
 }
 arithmetics! {
-    /// One lane: products and sums round apart.
+    /// Arithmetic of one lane: products and sums round separately.
     Exact: false, false, false;
-    /// Levels that fuse: [`Op::MulAdd`] rounds once.
+    /// Arithmetic of levels that fuse: [`Op::MulAdd`] rounds once.
     Fused: true, true, false;
-    /// GPUs, whose fused product may be two operations.
+    /// Arithmetic of GPUs, whose fused product may be two operations.
     Gpu: true, false, false;
-    /// GPUs, with powers and logarithms of the target.
+    /// Arithmetic of GPUs, with powers and logarithms of the target.
     ///
     /// - Accuracy: [`math::gaussian`](crate::model::math::gaussian) and [`math::log2`](crate::model::math::log2) have the error of
     ///   the target's `exp2` and `log2`: in WGSL 3 + 2 |x| units in the last place, and 3 units or 2^-21 for the logarithm.
     GpuNative: true, false, true;
 }
 
-/// The name of a number that a recorder received.
+/// Number on lanes that record, as the name that the recorder gave its result.
 pub struct Traced<R, A> {
     name: u32,
     kind: PhantomData<fn() -> (R, A)>,
 }
 
-/// The name of a mask.
+/// Mask on lanes that record, as the name that the recorder gave its result.
 pub struct TracedMask<R> {
     name: u32,
     kind: PhantomData<fn() -> R>,
@@ -203,13 +204,13 @@ macro_rules! names {
             }
         }
         impl<$($generics),*> $Name<$($generics),*> {
-            /// The result of that name.
+            /// Makes the number or mask that has this name.
             #[inline]
             #[must_use]
             pub const fn named(name: u32) -> Self {
                 Self { name, kind: PhantomData }
             }
-            /// Its name.
+            /// Returns the name that the recorder gave the result.
             #[inline]
             #[must_use]
             pub const fn name(self) -> u32 {
@@ -259,7 +260,7 @@ macro_rules! binary {
 }
 binary! { Add add; Sub sub; Mul mul; Div div; }
 
-/// Arithmetic with the same number for all lanes: as that of other lanes, but for the line that is recorded.
+/// Arithmetic with one number for all lanes, like that of other lanes except for the line that is recorded.
 macro_rules! by_number {
     ($($Op:ident $op:ident;)*) => { $(
         impl<R: Recorder, A: Arithmetic> $Op<f32> for Traced<R, A> {

@@ -1,20 +1,21 @@
 /* hairis: hair scattering for renderers. C interface, version 1.
  *
- * Ownership. Every struct is plain data of the caller: memcpy copies it, nothing is to be destroyed, and the library allocates
- * nothing. A material or BSDF that is all zero scatters nothing. Handles are valid in the process that made them.
+ * Ownership. Every struct is plain data of the caller: memcpy copies it, nothing needs to be destroyed, and the library allocates
+ * nothing. A material or BSDF whose bytes are all zero scatters nothing. Handles are valid only in the process that made them.
  *
- * Threads. Calls have no state but the CPU's features. Any number may run at once, as long as nothing is written that
- * another call reads.
+ * Threads. Calls share no state except the features of the CPU. Any number of calls may run at once, as long as none of them writes
+ * data that another call reads.
  *
- * Directions point away from the fibre, in its frame: u along it from root to tip, v and w across. wo is towards the viewer,
- * wi towards the light, both of unit length. Values are S without the cosine, linear RGB, per steradian; densities are per
- * steradian; a weight is S cos(theta_i) / pdf, where cos(theta_i) = sqrt(v^2 + w^2). Angles are radians. A direction that
- * is not finite is black.
+ * Directions point away from the fibre, in its frame: u runs along the fibre from root to tip, and v and w lie across it. wo points
+ * towards the viewer and wi towards the light, both of unit length. Values are S without the cosine, linear RGB, per steradian, and
+ * densities are per steradian. A weight is S cos(theta_i) / pdf, where cos(theta_i) = sqrt(v^2 + w^2). Angles are in radians.
+ * Non-finite directions evaluate to zero.
  *
- * Pointers are not NULL unless it says so. Columns hold n numbers each, at any alignment; an output overlaps no other column.
+ * Pointers must not be NULL unless a comment allows it. Columns hold n numbers each, at any alignment; an output must not overlap
+ * any other column.
  *
- * Refusals. Only functions that return hairis_status refuse; when they do, they write to *error and nowhere else. error may be
- * NULL. With n = 0 a call succeeds whatever its pointers. */
+ * Errors. Only functions that return hairis_status report errors. On an error, a function writes at most to *error, which may be
+ * NULL, and nowhere else. With n = 0 a call succeeds whatever its pointers are. */
 #ifndef HAIRIS_H
 #define HAIRIS_H
 
@@ -28,8 +29,8 @@ extern "C" {
 #define HAIRIS_ALIGN(n) _Alignas(n)
 #endif
 
-/* Rises when a struct, a size or a meaning changes; new functions, models and fields do not raise it. It is the number in
- * libhairis.so.1. */
+/* Version of the interface, which is the number in libhairis.so.1. The version rises when a struct, a size or a meaning changes, but
+ * not for new functions, models or fields. */
 #define HAIRIS_ABI_VERSION 1
 #define HAIRIS_MATERIAL_SIZE 1536
 #define HAIRIS_BSDF_SIZE 1024
@@ -38,23 +39,23 @@ extern "C" {
 typedef int32_t hairis_status;
 enum {
   HAIRIS_OK = 0,
-  HAIRIS_NAME = 1,    /* no such model, choice, preset, field or word */
-  HAIRIS_VALUE = 2,   /* a value out of its range, or another count of numbers */
-  HAIRIS_ARGUMENT = 3 /* NULL, an unknown code, an empty handle, or an index outside the materials */
+  HAIRIS_NAME = 1,    /* there is no such model, choice, preset, field or word */
+  HAIRIS_VALUE = 2,   /* a value is out of its range, or the field has another count of numbers */
+  HAIRIS_ARGUMENT = 3 /* a pointer is NULL, a code is unknown, a handle is empty, or an index is out of range */
 };
 enum {
-  HAIRIS_ENERGY_RAW = 0,        /* the model as it is: the published one may return more light than arrives */
-  HAIRIS_ENERGY_CONSERVING = 1, /* no direction returns more light than arrives; not reciprocal where that changes it */
+  HAIRIS_ENERGY_RAW = 0,        /* the model as it is: the published model may return more light than arrives */
+  HAIRIS_ENERGY_CONSERVING = 1, /* no direction returns more light than arrives; not reciprocal where this limit changes the model */
   HAIRIS_ENERGY_SCALED = 2      /* one factor on all colours: reciprocal, and darker */
 };
 enum { HAIRIS_KIND_NUMBER = 0, HAIRIS_KIND_NUMBERS = 1, HAIRIS_KIND_RGB = 2, HAIRIS_KIND_WORD = 3 };
 enum {
   HAIRIS_PARTITION_ALL = 0,     /* resampling estimates all light */
-  HAIRIS_PARTITION_BALANCE = 1, /* the light technique's share by the balance heuristic; the next direction brings the rest */
-  HAIRIS_PARTITION_POWER = 2    /* by the power heuristic */
+  HAIRIS_PARTITION_BALANCE = 1, /* the light technique's share by the balance heuristic; the next BSDF sample adds the rest */
+  HAIRIS_PARTITION_POWER = 2    /* the light technique's share by the power heuristic */
 };
 
-/* What was refused: the field, its number at fault (-1: the whole field), that value, and a sentence. */
+/* An error: the field, the number at fault (-1 for the whole field), the value of that number, and a sentence. */
 typedef struct hairis_error {
   hairis_status code;
   int32_t number;
@@ -66,7 +67,7 @@ typedef struct hairis_error {
 typedef struct hairis_model_info {
   char name[32];   /* "gaussian", "cauchy", "kajiya-kay", "chiang"; entries with other samplers share it */
   char choice[32]; /* the field that selects among them, "" if there is one entry */
-  char word[32];   /* this entry's word of that field */
+  char word[32];   /* the word of that field that selects this entry */
   char lobe_names[4][16];
   uint32_t lobes, fields, presets;
   uint32_t near_field; /* 1: the model reads h */
@@ -75,26 +76,26 @@ typedef struct hairis_model_info {
 
 typedef struct hairis_field_info {
   char name[32];
-  char instead_of[32]; /* the field it may take the place of, or "" */
+  char instead_of[32]; /* the field that this one may take the place of, or "" */
   uint32_t kind;       /* HAIRIS_KIND_ */
   uint32_t width;      /* count of numbers */
-  uint32_t first;      /* its first number in hairis_params.numbers */
+  uint32_t first;      /* place of its first number in hairis_params.numbers */
   uint32_t optional;   /* 1: may be left out of files */
-  float least, most;   /* range that is accepted, both ends included; 0 and 0 for words */
-  uint32_t labels;     /* count of label */
-  char label[4][16];   /* KIND_WORD: the words; KIND_NUMBERS: what each number is */
+  float least, most;   /* accepted range, both ends included; 0 and 0 for words */
+  uint32_t labels;     /* count of entries in label */
+  char label[4][16];   /* the words of KIND_WORD; the name of each number of KIND_NUMBERS */
   char unit[8];        /* "rad" or "" */
   char doc[128];
 } hairis_field_info;
 
-/* Values of a model's fields. Bit i of given: field i has a value. A word is its place among the words. */
+/* Values of a model's fields. Bit i of given is set if field i has a value. A word is stored as its place among the words. */
 typedef struct hairis_params {
   uint32_t model;
   uint32_t given;
   float numbers[HAIRIS_NUMBERS];
 } hairis_params;
 
-/* The published model in an artist's terms: colours times intensities, degrees. */
+/* The published model in an artist's terms: each colour is multiplied by its intensity, and angles are in degrees. */
 typedef struct hairis_highlight { float color[3], intensity, shift_deg, width_deg; } hairis_highlight;
 typedef struct hairis_transmission {
   float color[3], intensity, shift_deg, width_deg, azimuthal_width_deg;
@@ -103,16 +104,16 @@ typedef struct hairis_glints { float strength, separation_deg, azimuthal_width_d
 typedef struct hairis_artist {
   hairis_highlight primary;         /* R: white or nearly so */
   hairis_transmission transmission; /* TT */
-  hairis_highlight secondary;       /* TRT: of the hair's colour */
+  hairis_highlight secondary;       /* TRT: in the colour of the hair */
   hairis_glints glints;
 } hairis_artist;
 
-/* A model with its parameters. */
+/* A model with its parameters, made once per material. */
 typedef struct hairis_material {
   HAIRIS_ALIGN(16) uint32_t head[4];
   unsigned char body[HAIRIS_MATERIAL_SIZE - 16];
 } hairis_material;
-/* A material at a hit, seen from wo. */
+/* A material at a hit, seen from wo; made once per hit. */
 typedef struct hairis_bsdf {
   HAIRIS_ALIGN(16) uint32_t head[4];
   unsigned char body[HAIRIS_BSDF_SIZE - 16];
@@ -121,39 +122,40 @@ typedef struct hairis_bsdf {
 typedef struct hairis_eval_result { float value[3], pdf; } hairis_eval_result;
 /* A lobe's part of S is value * color; pdf is the density of sampling from it alone. */
 typedef struct hairis_lobe_result { float value, color[3], pdf; } hairis_lobe_result;
-/* lobe is -1 for a discarded sample, and all else 0. It counts, with a contribution of 0; do not draw it again. */
+/* For a discarded sample, lobe is -1 and all other fields are 0. Such a sample counts, with a contribution of 0: do not redraw it. */
 typedef struct hairis_sample_result { float wi[3], pdf, value[3], weight[3]; int32_t lobe; } hairis_sample_result;
 
-/* Outputs. Columns that are NULL are not written; over hits, the three of one vector are all NULL or none is. */
+/* Outputs. Columns that are NULL are not written; over hits, the three columns of one vector are either all NULL or all given. */
 typedef struct hairis_evals { float *value[3], *pdf; } hairis_evals;
-/* lobe: slot of the lobe as a number, -1 for a discarded sample, which has value, pdf and weight 0. Its wi may be anything, but
- * is 0 if wi alone is asked for. */
+/* lobe: slot of the lobe as a number, -1 for a discarded sample. The value, pdf and weight of a discarded sample are 0; its wi may be
+ * anything, but is 0 if no column other than wi is given. */
 typedef struct hairis_samples { float *wi[3], *value[3], *pdf, *weight[3], *lobe; } hairis_samples;
 typedef struct hairis_hits {
   const float *wo[3];
-  const float *h;        /* offset across the fibre; NULL: 0 for all */
-  const uint32_t *index; /* index of each hit's material; NULL: 0 for all */
+  const float *h;        /* offset across the fibre; NULL stands for 0 everywhere */
+  const uint32_t *index; /* index of each hit's material; NULL stands for 0 everywhere */
 } hairis_hits;
 typedef struct hairis_candidates { const float *wi[3], *radiance[3], *pdf_light; } hairis_candidates;
 typedef struct hairis_weights { float *contribution[3], *weight; } hairis_weights;
-/* Candidates that were drawn from the BSDF and from the light, and HAIRIS_PARTITION_. */
+/* Counts of the candidates drawn from the BSDF and from the light, and one of HAIRIS_PARTITION_. */
 typedef struct hairis_counts { uint32_t bsdf, light, partition; } hairis_counts;
 typedef struct hairis_choice { size_t index; uint32_t count; float contribution[3]; } hairis_choice;
 
-/* The library. A host compares hairis_abi_version() with HAIRIS_ABI_VERSION once. The name of the instruction set that calls run on
- * is for reports: at most size - 1 characters and a 0 are written, and the length is returned, as snprintf does. */
+/* The library. A host compares hairis_abi_version() with HAIRIS_ABI_VERSION once. level_name writes the name of the instruction set
+ * that calls run on, for reports: like snprintf, it writes at most size - 1 characters and a 0, and returns the length of the name. */
 uint32_t hairis_abi_version(void);
 const char *hairis_version(void);
 size_t hairis_level_name(char *to, size_t size);
 
-/* Models, their fields and presets, by index from 0. Names are what files keep: indices may change with the library. */
+/* Models, their fields and presets, by index from 0. Store names in files, because indices may change with the library. */
 uint32_t hairis_model_count(void);
 hairis_status hairis_model_describe(uint32_t model, hairis_model_info *to);
 hairis_status hairis_field_describe(uint32_t model, uint32_t field, hairis_field_info *to);
-size_t hairis_preset_name(uint32_t model, uint32_t preset, char *to, size_t size); /* 0: there is none */
+size_t hairis_preset_name(uint32_t model, uint32_t preset, char *to, size_t size); /* 0 if there is none */
 
-/* Parameters: those of a preset, or the defaults where preset is NULL, of the entry with the word choice, or the first of the name
- * where choice is NULL. Setting a field clears those that it takes the place of. Ranges are checked by hairis_material_init. */
+/* Parameters. init writes the parameters of a preset, or the defaults if preset is NULL. The entry is the one with the word choice, or
+ * the first of the name if choice is NULL. Setting a field clears the fields that it takes the place of. hairis_material_init checks
+ * the ranges. */
 hairis_status hairis_params_init(hairis_params *to, const char *model, const char *choice, const char *preset,
                                  hairis_error *error);
 hairis_status hairis_params_set(hairis_params *params, const char *field, const float *numbers, size_t count,
@@ -162,40 +164,42 @@ hairis_status hairis_params_set_word(hairis_params *params, const char *field, c
 void hairis_artist_init(hairis_artist *to);
 hairis_status hairis_params_set_artist(hairis_params *params, const hairis_artist *from, hairis_error *error);
 
-/* Once per material. energy is HAIRIS_ENERGY_. */
+/* Functions called once per material. energy is one of HAIRIS_ENERGY_. */
 hairis_status hairis_material_init(hairis_material *to, const hairis_params *params, uint32_t energy, hairis_error *error);
-/* The largest directional albedo without the factor of HAIRIS_ENERGY_CONSERVING: above 1, light is gained. A search, 0.1 ms. */
+/* Returns the largest directional albedo without the factor of HAIRIS_ENERGY_CONSERVING. Above 1, the material returns more light
+ * than arrives. The search takes 0.1 ms. */
 float hairis_material_max_albedo(const hairis_material *material);
 
-/* Once per hit. frame: rows u, v, w; without a normal, v and w depend on the tangent alone. offset: h of a hit with this outward
- * normal, all in the world. prepare: wo and h, which models of the far field ignore. restrict: bit i keeps lobe i; the others
- * neither scatter nor are sampled. albedo: of each lobe, linear RGB. */
+/* Functions called once per hit. frame writes the rows u, v and w; without a normal, v and w depend on the tangent alone. offset
+ * returns the h of a hit with this outward normal, with all arguments in world space. prepare takes wo and h; far-field models ignore
+ * the h. restrict keeps lobe i if bit i is set; the other lobes neither scatter nor are sampled. albedo writes the albedo of each
+ * lobe, linear RGB. */
 void hairis_frame(const float tangent[3], const float normal[3] /* or NULL */, float to[9]);
 float hairis_offset(const float frame[9], const float normal[3], const float wo[3]);
 void hairis_prepare(hairis_bsdf *to, const hairis_material *material, float u, float v, float w, float h);
 void hairis_restrict(hairis_bsdf *bsdf, uint32_t lobes);
 void hairis_albedo(const hairis_bsdf *bsdf, float to[4][3]);
 
-/* One direction. xi are uniform numbers in [0, 1). */
+/* Functions on one direction. The xi are uniform numbers in [0, 1). */
 hairis_eval_result hairis_eval_pdf(const hairis_bsdf *bsdf, float u, float v, float w);
 void hairis_lobes(const hairis_bsdf *bsdf, float u, float v, float w, hairis_lobe_result to[4]);
 hairis_sample_result hairis_sample(const hairis_bsdf *bsdf, float xi_lobe, float xi_theta, float xi_phi);
 
-/* n directions at one hit. */
+/* Functions on n directions at one hit. */
 hairis_status hairis_eval_columns(const hairis_bsdf *bsdf, size_t n, const float *const wi[3], const hairis_evals *to);
 hairis_status hairis_sample_columns(const hairis_bsdf *bsdf, size_t n, const float *const xi[3], const hairis_samples *to);
 
-/* One direction at each of n hits, on count materials, of any models. Sort hits by material: eight in a row on one material run
- * without packing. */
+/* Functions on one direction at each of n hits, on count materials of any models. Sort the hits by material, because eight consecutive
+ * hits on one material run without packing. */
 hairis_status hairis_eval_hits(const hairis_material *materials, size_t count, size_t n, const hairis_hits *hits,
                                const float *const wi[3], const hairis_evals *to);
 hairis_status hairis_sample_hits(const hairis_material *materials, size_t count, size_t n, const hairis_hits *hits,
                                  const float *const xi[3], const hairis_samples *to);
 
-/* One ray for many candidates of one hit. The host draws those of the BSDF (hairis_sample_columns, wi alone) and of its light,
- * looks up the radiance and the light's density of all, and has them weighed. choose picks k by one number u in [0, 1), with
- * probability proportional to the weights; it returns how many it wrote, at most k: equal choices are one ray. The sum of
- * visibility * contribution over them is the light. */
+/* One ray for many candidates of one hit. The host draws candidates from the BSDF (hairis_sample_columns with wi alone) and from its
+ * light, looks up the radiance and the light's density for all of them, and weighs them. choose picks k candidates by one number u in
+ * [0, 1), with probability proportional to their weights. It returns the number of choices that it wrote, which is at most k because
+ * equal choices share one ray. The sum of visibility * contribution over the choices is the light. */
 hairis_status hairis_weigh_columns(const hairis_bsdf *bsdf, size_t n, const hairis_candidates *candidates,
                                    hairis_counts counts, const hairis_weights *to);
 size_t hairis_choose(const hairis_weights *from, size_t n, uint32_t k, float u, hairis_choice *to);

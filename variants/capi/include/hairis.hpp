@@ -1,6 +1,6 @@
 // hairis for C++17: materials and BSDFs as value types over hairis.h.
 //
-// Set-up throws hairis::Error; calls per hit and per direction are noexcept. Copies are memcpy, and nothing is to be destroyed.
+// Set-up throws hairis::Error; calls per hit and per direction are noexcept. Copies are memcpy, and nothing needs to be destroyed.
 #ifndef HAIRIS_HPP
 #define HAIRIS_HPP
 
@@ -16,13 +16,13 @@
 
 namespace hairis {
 
-/// Refusal of set-up: what() is a sentence, and the rest says where.
+/// Error of set-up: what() is a sentence, and the other members say what is at fault.
 class Error : public std::runtime_error {
  public:
   explicit Error(const hairis_error &error) : std::runtime_error(error.message), error_(error) {}
   hairis_status code() const noexcept { return error_.code; }
   const char *field() const noexcept { return error_.field; }
-  /// Place of the number at fault in its field; -1 for a whole field.
+  /// Place of the number at fault in its field, or -1 for the whole field.
   int number() const noexcept { return error_.number; }
   float value() const noexcept { return error_.value; }
 
@@ -36,7 +36,7 @@ enum class Energy : uint32_t {
   Scaled = HAIRIS_ENERGY_SCALED,
 };
 
-/// Models of the library, with their fields and presets: what a host's interface shows.
+/// Model of the library with its fields and presets, as a host's interface presents it.
 struct Model {
   hairis_model_info info{};
   std::vector<hairis_field_info> fields;
@@ -64,7 +64,8 @@ struct Model {
 /// Values of a model's fields, by name.
 class Params {
  public:
-  /// choice: word of the sampler, or of the model's other choice; preset: a name. Both may be nullptr.
+  /// Makes parameters of a model. choice is the word of the sampler, or of the model's other choice, and preset is a name; both may be
+  /// nullptr.
   explicit Params(const char *model, const char *choice = nullptr, const char *preset = nullptr) {
     if (hairis_abi_version() != HAIRIS_ABI_VERSION) {
       throw std::runtime_error("hairis: the library has interface " + std::to_string(hairis_abi_version()) +
@@ -103,18 +104,18 @@ class Params {
   hairis_params params_{};
 };
 
-/// A material at a hit. One that is default-made is black.
+/// Material at a hit. A default-constructed BSDF scatters nothing.
 class Bsdf {
  public:
   Bsdf() = default;
   Bsdf(const hairis_material &material, std::array<float, 3> wo, float h = 0) noexcept {
     hairis_prepare(&bsdf_, &material, wo[0], wo[1], wo[2], h);
   }
-  /// Value without the cosine, and density.
+  /// Returns the value without the cosine, and the density.
   hairis_eval_result eval_pdf(std::array<float, 3> wi) const noexcept {
     return hairis_eval_pdf(&bsdf_, wi[0], wi[1], wi[2]);
   }
-  /// Nothing for a discarded sample, which counts as 0.
+  /// Draws a sample. Returns nothing for a discarded sample, which still counts, with a contribution of 0.
   std::optional<hairis_sample_result> sample(float xi_lobe, float xi_theta, float xi_phi) const noexcept {
     hairis_sample_result s = hairis_sample(&bsdf_, xi_lobe, xi_theta, xi_phi);
     if (s.lobe < 0) return std::nullopt;
@@ -125,7 +126,7 @@ class Bsdf {
     hairis_lobes(&bsdf_, wi[0], wi[1], wi[2], to.data());
     return to;
   }
-  /// Directional albedo of all lobes.
+  /// Returns the directional albedo of all lobes together.
   std::array<float, 3> albedo() const noexcept {
     float lobes[4][3];
     hairis_albedo(&bsdf_, lobes);
@@ -135,7 +136,7 @@ class Bsdf {
     }
     return sum;
   }
-  /// Bit i keeps lobe i.
+  /// Keeps lobe i if bit i is set; the other lobes neither scatter nor are sampled.
   Bsdf with_lobes(uint32_t lobes) const noexcept {
     Bsdf kept = *this;
     hairis_restrict(&kept.bsdf_, lobes);
@@ -147,7 +148,7 @@ class Bsdf {
   hairis_bsdf bsdf_{};
 };
 
-/// A model with checked parameters. One that is default-made is black.
+/// Model with checked parameters. A default-constructed material scatters nothing.
 class Material {
  public:
   Material() = default;

@@ -1,4 +1,4 @@
-//! Hair in an artist's terms.
+//! Hair in an artist's terms: colours and intensities of the highlights, with angles in degrees.
 
 use crate::layout::{ARGUMENT, Artist, Error, Glints, Highlight, OK, Params, Transmission};
 use crate::setup::{params_of, refuse_value, values_of};
@@ -7,7 +7,7 @@ use hairis::HairParams;
 use hairis::params::{self, ArtistControls};
 use hairis_variants::Parameters;
 
-/// Converts structs of C to those of Rust with the same fields, and back.
+/// Converts structs of C to the structs of Rust with the same fields, and back.
 macro_rules! same_fields {
     ($($of_c:ident = $of_rust:ident { $($field:ident),* })*) => {$(
         impl From<params::$of_rust> for $of_c {
@@ -30,14 +30,14 @@ same_fields! {
     Artist = ArtistControls { primary, transmission, secondary, glints }
 }
 
-/// `hairis_artist_init`.
+/// Implements `hairis_artist_init`: writes the default controls.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_artist_init(to: *mut Artist) {
     // SAFETY: the caller's promise.
     unsafe { to.write(ArtistControls::default().into()) };
 }
 
-/// `hairis_params_set_artist`.
+/// Implements `hairis_params_set_artist`: replaces parameters by the hair that an artist's controls describe.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_params_set_artist(
     params: *mut Params,

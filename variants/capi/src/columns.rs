@@ -1,7 +1,7 @@
-//! Many directions at one hit, and candidates.
+//! Calls on many directions at one hit, and on candidates for resampling.
 //!
-//! Each call has one kernel per model, which writes every column: columns that the host leaves out go to a scratch buffer. A
-//! kernel per set of columns, as Rust has them, would double the library.
+//! Each call has one kernel per model, which writes every column; columns that the host leaves out go to a scratch buffer. One
+//! kernel per set of columns, as in the Rust interface, would double the size of the library.
 
 use crate::handles::{bsdf, model_at};
 use crate::layout::{
@@ -14,37 +14,37 @@ use hairis::model::Model;
 use hairis::resample::{self, CandidateColumns, Partition, WeightColumns};
 use hairis::simd::{Lanes, Level, Row, Vec3x};
 
-/// Largest count of numbers of a column.
+/// Largest count of numbers that a column may have.
 const MOST: usize = isize::MAX as usize / size_of::<f32>();
-/// Rows of a scratch buffer. Its columns are apart by other than a power of two.
+/// Rows of a scratch buffer, whose columns lie apart by a distance that is not a power of two.
 pub(crate) const CHUNK: usize = 256;
 
-/// Whether there are `n` numbers in each of these columns, as far as that can be seen.
+/// Returns true if each of these columns can hold `n` numbers, as far as a pointer shows.
 pub(crate) fn are_there<const N: usize>(columns: [*const f32; N], n: usize) -> bool {
     n <= MOST && columns.iter().all(|column| !column.is_null())
 }
 
-/// `n` numbers of the host.
+/// Borrows `n` numbers of the host.
 pub(crate) unsafe fn input<'a>(from: *const f32, n: usize) -> &'a [f32] {
     // SAFETY: the caller's promise.
     unsafe { from_raw_parts(from, n) }
 }
 
-/// `n` numbers of the host by component, from number `at` on.
+/// Borrows `n` numbers of each component of the host's columns, from number `at` on.
 pub(crate) unsafe fn input3<'a>(from: [*const f32; 3], at: usize, n: usize) -> [&'a [f32]; 3] {
     // SAFETY: the caller's promise.
     from.map(|from| unsafe { input(from.add(at), n) })
 }
 
-/// `n` numbers that the host wants written.
+/// Borrows `n` numbers of the host for writing.
 pub(crate) unsafe fn output<'a>(to: *mut f32, n: usize) -> &'a mut [f32] {
     // SAFETY: the caller's promise.
     unsafe { from_raw_parts_mut(to, n) }
 }
 
-/// Rows of evaluations at a BSDF.
+/// Kernel that evaluates one row at a BSDF.
 struct Eval<'a, M: Model>(&'a M::Prepared<f32>);
-/// Rows of samples of a BSDF.
+/// Kernel that draws one row of samples from a BSDF.
 struct Sample<'a, M: Model>(&'a M::Prepared<f32>);
 
 impl<M: Model> Clone for Eval<'_, M> {
@@ -78,25 +78,25 @@ impl<M: Model> Row<3, 11> for Sample<'_, M> {
     }
 }
 
-/// The columns of an evaluation: value, density.
+/// Returns the columns of an evaluation, which are the value and the density.
 pub(crate) const fn evals(to: &Evals) -> [*mut f32; 4] {
     let [r, g, b] = to.value;
     [r, g, b, to.pdf]
 }
 
-/// The columns of a sample, in the order of Rust's.
+/// Returns the columns of a sample, in the order of the Rust interface.
 pub(crate) const fn samples(to: &Samples) -> [*mut f32; 11] {
     let ([u, v, w], [r, g, b], [wr, wg, wb]) = (to.wi, to.value, to.weight);
     [u, v, w, r, g, b, to.pdf, wr, wg, wb, to.lobe]
 }
 
-/// Whether the host wants the directions of samples and nothing else: candidates, which are 0 where a sample is discarded.
+/// Returns true if the host wants only the directions of samples. Such candidates are 0 where a sample is discarded.
 pub(crate) fn are_candidates(to: &[*mut f32; 11]) -> bool {
     to[..3].iter().all(|column| !column.is_null()) && to[3..].iter().all(|column| column.is_null())
 }
 
-/// Runs `rows` over all `n` rows: at once if the host wants every column, else chunk by chunk with a scratch buffer for the
-/// columns it leaves out. `rows` takes the first row, their count and the columns.
+/// Runs `rows` over all `n` rows: at once if the host wants every column, or else chunk by chunk with a scratch buffer for the
+/// columns that it leaves out. `rows` takes the first row, the count of rows and the columns.
 ///
 /// # Safety
 ///
@@ -126,7 +126,7 @@ unsafe fn in_chunks<const N: usize>(
     }
 }
 
-/// Zeroes the directions of discarded samples, which have the density 0.
+/// Sets the directions of discarded samples, whose density is 0, to zero.
 pub(crate) unsafe fn discard(wi: &[*mut f32; 3], pdf: &[f32], count: usize) {
     for (row, pdf) in pdf.iter().take(count).enumerate() {
         if *pdf <= 0.0 {
@@ -138,7 +138,7 @@ pub(crate) unsafe fn discard(wi: &[*mut f32; 3], pdf: &[f32], count: usize) {
     }
 }
 
-/// `hairis_eval_columns`.
+/// Implements `hairis_eval_columns`: evaluates many directions at one BSDF.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_eval_columns(
     raw: *const RawBsdf,
@@ -170,7 +170,7 @@ pub unsafe extern "C" fn hairis_eval_columns(
     OK
 }
 
-/// `hairis_sample_columns`.
+/// Implements `hairis_sample_columns`: draws many samples from one BSDF.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_sample_columns(
     raw: *const RawBsdf,
@@ -208,13 +208,13 @@ pub unsafe extern "C" fn hairis_sample_columns(
     OK
 }
 
-/// All columns of a call that weighs.
+/// Returns all columns of a call that weighs candidates.
 const fn weigh_columns(from: &Candidates, to: &Weights) -> [*const f32; 11] {
     let ([u, v, w], [r, g, b], [fr, fg, fb]) = (from.wi, from.radiance, to.contribution);
     [u, v, w, r, g, b, from.pdf_light, fr, fg, fb, to.weight]
 }
 
-/// `hairis_weigh_columns`.
+/// Implements `hairis_weigh_columns`: weighs candidates for resampling.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_weigh_columns(
     raw: *const RawBsdf,
@@ -284,7 +284,7 @@ pub unsafe extern "C" fn hairis_weigh_columns(
     OK
 }
 
-/// Weighs evaluated candidates: compiled once, for all models.
+/// Weighs candidates that have been evaluated. This function is compiled once for all models.
 #[inline(never)]
 fn weigh_chunk(
     level: Level,
@@ -297,7 +297,7 @@ fn weigh_chunk(
     let _ = resample::weigh_evals(level, evals, candidates, counts, partition, out);
 }
 
-/// `hairis_choose`.
+/// Implements `hairis_choose`: chooses among weighed candidates.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_choose(
     from: *const Weights,

@@ -1,5 +1,5 @@
 //! Handles as the host stores them: a head with the model's tag, and the Rust handle behind it. Every material has the constants that
-//! conserve energy; in a raw one they change nothing. Two types would double the code.
+//! conserve energy, although they change nothing in a raw material, because a second type would double the code.
 
 use crate::layout::{BSDF_SIZE, HEAD_SIZE, MATERIAL_SIZE, RawBsdf, RawMaterial};
 use crate::models::tagged;
@@ -7,7 +7,7 @@ use core::mem::MaybeUninit;
 use hairis::{Bsdf, Conserving, Material};
 use hairis_variants::{ModelId, Registered};
 
-/// The sizes of the header hold the handles of `M`: used where handles are written, for every model.
+/// Asserts that the sizes in the header hold the handles of `M`. Every function that writes handles calls this, for every model.
 pub(crate) const fn assert_fits<M: Registered>() {
     const {
         let [material, bsdf] = [
@@ -30,21 +30,21 @@ pub(crate) const fn assert_fits<M: Registered>() {
     }
 }
 
-/// The model of a material; `None` if it is empty.
+/// Returns the model of a material, or `None` if the material is empty.
 #[inline(always)]
 pub(crate) unsafe fn model_of(material: *const RawMaterial) -> Option<ModelId> {
     // SAFETY: the caller's promise.
     tagged(unsafe { (&raw const (*material).head).cast::<u32>().read() })
 }
 
-/// The model of a BSDF; `None` if it is empty.
+/// Returns the model of a BSDF, or `None` if the BSDF is empty.
 #[inline(always)]
 pub(crate) unsafe fn model_at(bsdf: *const RawBsdf) -> Option<ModelId> {
     // SAFETY: the caller's promise.
     tagged(unsafe { (&raw const (*bsdf).head).cast::<u32>().read() })
 }
 
-/// The material of a handle whose tag is that of `M`.
+/// Returns the material of a handle whose tag is the tag of `M`.
 #[inline(always)]
 pub(crate) unsafe fn material<'a, M: Registered>(
     raw: *const RawMaterial,
@@ -53,14 +53,14 @@ pub(crate) unsafe fn material<'a, M: Registered>(
     unsafe { &*(&raw const (*raw).body).cast() }
 }
 
-/// The BSDF of a handle whose tag is that of `M`.
+/// Returns the BSDF of a handle whose tag is the tag of `M`.
 #[inline(always)]
 pub(crate) unsafe fn bsdf<'a, M: Registered>(raw: *const RawBsdf) -> &'a Bsdf<Conserving<M>> {
     // SAFETY: `hairis_prepare` wrote it, which `assert_fits`.
     unsafe { &*(&raw const (*raw).body).cast() }
 }
 
-/// The place of a BSDF of `M`, which the caller writes.
+/// Returns the place of a BSDF of `M`, into which the caller writes the BSDF.
 #[inline(always)]
 pub(crate) unsafe fn place<'a, M: Registered>(
     raw: *mut RawBsdf,

@@ -1,4 +1,5 @@
-//! One direction at each of many hits, on one material or on several: a slice call of Rust's for the hits of each material.
+//! Calls on one direction at each of many hits, on one material or on several. The hits of each material are one slice call of the
+//! Rust interface.
 
 use crate::columns::{
     CHUNK, are_candidates, are_there, discard, evals, input, input3, output, samples,
@@ -11,14 +12,14 @@ use core::slice::from_raw_parts;
 use hairis::columns::{EvalColumns, HitColumns, SampleColumns, in_groups};
 use hairis_variants::ModelId;
 
-/// Columns that a call takes besides hits: a direction to evaluate, or numbers to sample with.
+/// Columns that a call writes, for evaluations or for samples.
 #[derive(Clone, Copy)]
 enum Call {
     Eval([*mut f32; 4]),
     Sample([*mut f32; 11]),
 }
 
-/// The columns of a call from one row on.
+/// Columns of a call, which start at one row.
 #[derive(Clone, Copy)]
 struct Rows {
     wo: [*const f32; 3],
@@ -28,7 +29,7 @@ struct Rows {
 }
 
 impl Rows {
-    /// The columns from row `at` on.
+    /// Returns the columns from row `at` on.
     unsafe fn after(&self, at: usize) -> Self {
         // SAFETY: the caller's promise: columns have as many rows, or are null.
         let (from, to) = (
@@ -59,19 +60,19 @@ impl Rows {
     }
 }
 
-/// `n` numbers to write; `None` if the host leaves them out.
+/// Borrows `n` numbers for writing; returns `None` if the host leaves the column out.
 unsafe fn optional<'a>(to: *mut f32, n: usize) -> Option<&'a mut [f32]> {
     // SAFETY: the caller's promise.
     (!to.is_null()).then(|| unsafe { output(to, n) })
 }
 
-/// Three columns to write; `None` if the host leaves them out.
+/// Borrows three columns for writing; returns `None` if the host leaves them out.
 unsafe fn optional3<'a>(to: [*mut f32; 3], n: usize) -> Option<[&'a mut [f32]; 3]> {
     // SAFETY: the caller's promise.
     (!to[0].is_null()).then(|| to.map(|to| unsafe { output(to, n) }))
 }
 
-/// Hits in a row on one material.
+/// Runs a call over consecutive hits on one material.
 unsafe fn run(id: ModelId, raw: *const RawMaterial, rows: *const Rows, n: usize) {
     visit!(id, M, (raw: *const RawMaterial, rows: *const Rows, n: usize) -> (), {
         // SAFETY: the tag is the model's; the caller's promise.
@@ -100,14 +101,14 @@ unsafe fn run(id: ModelId, raw: *const RawMaterial, rows: *const Rows, n: usize)
     });
 }
 
-/// Whether three columns are all there, or none of them.
+/// Returns true if all three columns are given, or none of them.
 fn are_whole(columns: [*mut f32; 3]) -> bool {
     let [first, rest @ ..] = columns;
     rest.iter()
         .all(|column| column.is_null() == first.is_null())
 }
 
-/// Runs a call over hits: those of one material at a time.
+/// Runs a call over hits, one material at a time.
 unsafe fn run_all(materials: *const RawMaterial, index: Option<&[u32]>, rows: &Rows, n: usize) {
     // SAFETY: the caller's promise.
     unsafe {
@@ -123,7 +124,7 @@ unsafe fn run_all(materials: *const RawMaterial, index: Option<&[u32]>, rows: &R
     }
 }
 
-/// Runs a call over hits on the material of an index, which is not empty.
+/// Runs a call over hits on the material at `index`; an empty material is skipped.
 unsafe fn run_one(materials: *const RawMaterial, index: u32, rows: &Rows, n: usize) {
     // SAFETY: the caller's promise: indices are checked.
     unsafe {
@@ -134,7 +135,7 @@ unsafe fn run_one(materials: *const RawMaterial, index: u32, rows: &Rows, n: usi
     }
 }
 
-/// Runs a call over hits on several materials, whose columns of results `call` names.
+/// Runs a call over hits on several materials; `call` wraps the columns of results.
 unsafe fn run_groups<const N: usize>(
     materials: *const RawMaterial,
     index: &[u32],
@@ -152,7 +153,7 @@ unsafe fn run_groups<const N: usize>(
     // SAFETY: the caller's promise.
     let outputs = columns.map(|column| unsafe { optional(column, n) }.unwrap_or_default());
     in_groups(index, inputs, outputs, 1, |index, inputs, outputs| {
-        // Null for columns that the host leaves out.
+        // Columns that the host leaves out are null.
         let [u, v, w, h, x, y, z] = inputs.map(|column| match column {
             [] => ptr::null(),
             column => column.as_ptr(),
@@ -171,7 +172,7 @@ unsafe fn run_groups<const N: usize>(
     });
 }
 
-/// Checks a call, and runs it.
+/// Checks the arguments of a call and runs the call.
 unsafe fn call(
     materials: *const RawMaterial,
     count: usize,
@@ -218,7 +219,7 @@ unsafe fn call(
     OK
 }
 
-/// Samples directions alone: those of discarded samples are 0, which the density tells.
+/// Samples directions alone. The directions of discarded samples, which the density marks, are set to zero.
 unsafe fn run_candidates(
     materials: *const RawMaterial,
     index: Option<&[u32]>,
@@ -248,7 +249,7 @@ unsafe fn run_candidates(
     }
 }
 
-/// `hairis_eval_hits`.
+/// Implements `hairis_eval_hits`: evaluates one direction at each hit.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_eval_hits(
     materials: *const RawMaterial,
@@ -269,7 +270,7 @@ pub unsafe extern "C" fn hairis_eval_hits(
     unsafe { call(materials, count, n, hits, wi, Call::Eval(evals(to))) }
 }
 
-/// `hairis_sample_hits`.
+/// Implements `hairis_sample_hits`: draws one sample at each hit.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_sample_hits(
     materials: *const RawMaterial,

@@ -1,11 +1,11 @@
-//! Structs and codes that both sides of the interface share. A test in C compares each with the header.
+//! Structs and codes that both sides of the interface share. A test in C compares each of them with the header.
 
 use core::ffi::c_char;
 
-/// A struct as the C compiler must see it.
+/// Layout that a struct must have for the C compiler.
 #[derive(Clone, Copy, Debug)]
 pub struct Layout {
-    /// Name in the header.
+    /// Name of the struct in the header.
     pub name: &'static str,
     /// Size in bytes.
     pub size: usize,
@@ -15,7 +15,7 @@ pub struct Layout {
     pub fields: &'static [(&'static str, usize, usize)],
 }
 
-/// Declares structs of C, and the table of their layouts.
+/// Declares the structs of the C interface, and the table of their layouts.
 macro_rules! structs {
     ($($(#[$meta:meta])* $name:ident = $c:literal { $($(#[$doc:meta])* $field:ident: $type:ty,)* })*) => {
         $(
@@ -27,7 +27,7 @@ macro_rules! structs {
             }
         )*
 
-        /// Every struct of the header.
+        /// Layout of every struct of the header, for the test that compares them.
         pub const LAYOUTS: &[Layout] = &[$(Layout {
             name: $c,
             size: size_of::<$name>(),
@@ -37,12 +37,12 @@ macro_rules! structs {
     };
 }
 
-/// Declares constants of C, and their table.
+/// Declares the constants of the C interface, and the table of their names and values.
 macro_rules! constants {
     ($($(#[$doc:meta])* $name:ident: $type:ty = $value:expr, $c:literal;)*) => {
         $($(#[$doc])* pub const $name: $type = $value;)*
 
-        /// Every constant of the header.
+        /// Name and value of every constant of the header, for the test that compares them.
         #[expect(
             clippy::cast_possible_wrap,
             reason = "small constants of several types"
@@ -60,43 +60,43 @@ constants! {
     BSDF_SIZE: usize = 1024, "HAIRIS_BSDF_SIZE";
     /// Largest count of numbers of a model.
     NUMBERS: usize = 32, "HAIRIS_NUMBERS";
-    /// Success.
+    /// Status of a call that succeeded.
     OK: i32 = 0, "HAIRIS_OK";
-    /// No such model, choice, preset, field or word.
+    /// Status if there is no such model, choice, preset, field or word.
     NAME: i32 = 1, "HAIRIS_NAME";
-    /// A value out of its range, or another count of numbers.
+    /// Status if a value is out of its range, or if a field has another count of numbers.
     VALUE: i32 = 2, "HAIRIS_VALUE";
-    /// A null pointer, an unknown code, or an index outside the materials.
+    /// Status if a pointer is null, a code is unknown, a handle is empty or an index is out of range.
     ARGUMENT: i32 = 3, "HAIRIS_ARGUMENT";
-    /// The model as it is.
+    /// Energy of the model as it is.
     ENERGY_RAW: u32 = 0, "HAIRIS_ENERGY_RAW";
-    /// No more light than arrives, direction by direction.
+    /// Energy limited to the light that arrives, direction by direction.
     ENERGY_CONSERVING: u32 = 1, "HAIRIS_ENERGY_CONSERVING";
-    /// No more light than arrives, by one factor.
+    /// Energy limited to the light that arrives, by one factor on all colours.
     ENERGY_SCALED: u32 = 2, "HAIRIS_ENERGY_SCALED";
-    /// A number.
+    /// Shape of a field with one number.
     KIND_NUMBER: u32 = 0, "HAIRIS_KIND_NUMBER";
-    /// Numbers, each with a label.
+    /// Shape of a field with several numbers, each with a label.
     KIND_NUMBERS: u32 = 1, "HAIRIS_KIND_NUMBERS";
-    /// Linear red, green and blue.
+    /// Shape of a field with a linear RGB colour.
     KIND_RGB: u32 = 2, "HAIRIS_KIND_RGB";
-    /// A word of a list.
+    /// Shape of a field with a word of a list.
     KIND_WORD: u32 = 3, "HAIRIS_KIND_WORD";
-    /// All light.
+    /// Partition in which resampling estimates all light.
     PARTITION_ALL: u32 = 0, "HAIRIS_PARTITION_ALL";
-    /// The light technique's share by the balance heuristic.
+    /// Partition in which resampling estimates the light technique's share by the balance heuristic.
     PARTITION_BALANCE: u32 = 1, "HAIRIS_PARTITION_BALANCE";
-    /// The light technique's share by the power heuristic.
+    /// Partition in which resampling estimates the light technique's share by the power heuristic.
     PARTITION_POWER: u32 = 2, "HAIRIS_PARTITION_POWER";
 }
 
-/// Bytes before the constants of a handle.
+/// Bytes of the head of a handle, which precede its constants.
 pub const HEAD_SIZE: usize = 16;
 
 structs! {
-    /// Refusal.
+    /// Error that a call of set-up reports.
     Error = "hairis_error" {
-        /// Status.
+        /// Status that the call returned.
         code: i32,
         /// Place of the number at fault in its field, or -1.
         number: i32,
@@ -104,16 +104,16 @@ structs! {
         value: f32,
         /// Field at fault.
         field: [c_char; 32],
-        /// A sentence.
+        /// Sentence for users.
         message: [c_char; 212],
     }
-    /// Entry of the list of models.
+    /// Entry of the list of models, as a host's interface presents it.
     ModelInfo = "hairis_model_info" {
         /// Name of the model.
         name: [c_char; 32],
         /// Field that selects among the entries of one name.
         choice: [c_char; 32],
-        /// Word of that field.
+        /// Word of that field that selects this entry.
         word: [c_char; 32],
         /// Names of the lobes, by slot.
         lobe_names: [[c_char; 16]; 4],
@@ -123,16 +123,16 @@ structs! {
         fields: u32,
         /// Number of presets.
         presets: u32,
-        /// Whether the model reads `h`.
+        /// Flag: 1 if the model reads `h`, otherwise 0.
         near_field: u32,
-        /// Whether the entry is the first of its name.
+        /// Flag: 1 if the entry is the first of its name, otherwise 0.
         is_default: u32,
     }
-    /// Field of a model's parameters.
+    /// Field of a model's parameters, as a host's interface presents it.
     FieldInfo = "hairis_field_info" {
-        /// Name.
+        /// Name of the field.
         name: [c_char; 32],
-        /// Field that it may take the place of.
+        /// Field that this field may take the place of, or an empty string.
         instead_of: [c_char; 32],
         /// Shape of the value.
         kind: u32,
@@ -140,7 +140,7 @@ structs! {
         width: u32,
         /// Place of the first number among all numbers of the parameters.
         first: u32,
-        /// Whether the field may be left out.
+        /// Flag: 1 if files may leave the field out, otherwise 0.
         optional: u32,
         /// Smallest number that is accepted.
         least: f32,
@@ -150,23 +150,23 @@ structs! {
         labels: u32,
         /// Words of the field, or a label for each number.
         label: [[c_char; 16]; 4],
-        /// Unit of the numbers.
+        /// Unit of the numbers: "rad", or an empty string.
         unit: [c_char; 8],
-        /// A sentence.
+        /// Sentence for users.
         doc: [c_char; 128],
     }
     /// Values of the fields of a model.
     Params = "hairis_params" {
         /// Index of the model.
         model: u32,
-        /// Bit `i` for a field `i` that has a value.
+        /// Bit `i` is set if field `i` has a value.
         given: u32,
         /// Numbers of all fields, in their order.
         numbers: [f32; NUMBERS],
     }
     /// Highlight in an artist's terms.
     Highlight = "hairis_highlight" {
-        /// Linear RGB.
+        /// Colour, linear RGB.
         color: [f32; 3],
         /// Factor on the colour.
         intensity: f32,
@@ -177,7 +177,7 @@ structs! {
     }
     /// Light through the fibre in an artist's terms.
     Transmission = "hairis_transmission" {
-        /// Linear RGB.
+        /// Colour, linear RGB.
         color: [f32; 3],
         /// Factor on the colour.
         intensity: f32,
@@ -224,15 +224,15 @@ structs! {
         /// Constants of the BSDF.
         body: [u8; BSDF_SIZE - HEAD_SIZE],
     }
-    /// Value and density.
+    /// Value and density of a direction.
     #[derive(Default)]
     EvalResult = "hairis_eval_result" {
-        /// S, linear RGB.
+        /// S without the cosine, linear RGB.
         value: [f32; 3],
-        /// Density.
+        /// Density per steradian.
         pdf: f32,
     }
-    /// A lobe at a direction.
+    /// Value, colour and density of one lobe at a direction.
     #[derive(Default)]
     LobeResult = "hairis_lobe_result" {
         /// The lobe's part of S without its colour.
@@ -242,36 +242,36 @@ structs! {
         /// Density of the lobe alone.
         pdf: f32,
     }
-    /// Sampled direction.
+    /// Sampled direction with its density, value and weight.
     #[derive(Default)]
     SampleResult = "hairis_sample_result" {
-        /// Direction.
+        /// Direction towards the light.
         wi: [f32; 3],
-        /// Density.
+        /// Density per steradian.
         pdf: f32,
-        /// S, linear RGB.
+        /// S without the cosine, linear RGB.
         value: [f32; 3],
-        /// `S cos theta_i / pdf`.
+        /// Throughput weight `S cos theta_i / pdf`.
         weight: [f32; 3],
         /// Slot of the lobe, -1 for a discarded sample.
         lobe: i32,
     }
     /// Columns of evaluations.
     Evals = "hairis_evals" {
-        /// S.
+        /// S by component, linear RGB.
         value: [*mut f32; 3],
         /// Densities.
         pdf: *mut f32,
     }
     /// Columns of samples.
     Samples = "hairis_samples" {
-        /// Directions.
+        /// Directions towards the light.
         wi: [*mut f32; 3],
-        /// S.
+        /// S by component, linear RGB.
         value: [*mut f32; 3],
         /// Densities.
         pdf: *mut f32,
-        /// Weights.
+        /// Throughput weights by component, linear RGB.
         weight: [*mut f32; 3],
         /// Slots of the lobes as numbers.
         lobe: *mut f32,
@@ -285,38 +285,38 @@ structs! {
         /// Indices of the materials.
         index: *const u32,
     }
-    /// Columns of candidates.
+    /// Columns of candidates for resampling.
     Candidates = "hairis_candidates" {
         /// Directions towards the light.
         wi: [*const f32; 3],
-        /// Radiance.
+        /// Radiance from each direction, linear RGB.
         radiance: [*const f32; 3],
-        /// The light's densities.
+        /// Densities with which the light samples the directions.
         pdf_light: *const f32,
     }
     /// Columns of weighed candidates.
     Weights = "hairis_weights" {
-        /// Contributions without visibility.
+        /// Contributions without visibility, linear RGB.
         contribution: [*mut f32; 3],
-        /// Weights.
+        /// Weights by which candidates are chosen.
         weight: *mut f32,
     }
-    /// How candidates were proposed.
+    /// Counts of the candidates that each technique proposed.
     Counts = "hairis_counts" {
-        /// Candidates of the BSDF.
+        /// Candidates that the BSDF proposed.
         bsdf: u32,
-        /// Candidates of the light.
+        /// Candidates that the light proposed.
         light: u32,
-        /// Share of the light that is estimated.
+        /// Share of the light that resampling estimates.
         partition: u32,
     }
-    /// A candidate that was chosen.
+    /// Candidate that was chosen, with the number of its choices.
     Choice = "hairis_choice" {
         /// Index of the candidate.
         index: usize,
-        /// Number of the choices that fell on it.
+        /// Number of choices that fell on the candidate.
         count: u32,
-        /// Light that it adds if nothing is in the way, linear RGB.
+        /// Light that the candidate adds if nothing occludes it, linear RGB.
         contribution: [f32; 3],
     }
 }

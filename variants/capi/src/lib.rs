@@ -1,8 +1,8 @@
 //! C interface of hairis: plain data that the caller owns, and every model of the registry by name.
 //!
-//! `include/hairis.h` documents the functions and the structs; names here are those of the header without their prefix.
-//! Callers promise what the header states: pointers are valid and not null unless it allows null, columns hold `n` numbers,
-//! and outputs overlap no other column.
+//! `include/hairis.h` documents the functions and the structs; structs and constants have the names of the header without their
+//! prefix. Callers promise what the header states: pointers are valid and not null unless the header allows null, columns hold
+//! `n` numbers, and outputs overlap no other column.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![allow(unsafe_code, reason = "arguments are pointers of C")]
 #![allow(

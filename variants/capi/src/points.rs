@@ -1,4 +1,4 @@
-//! A hit, and one direction at it: numbers in, structs by value out.
+//! Calls on one hit and on one direction: they take numbers and return structs by value.
 
 use crate::handles::{bsdf, material, model_at, model_of, place};
 use crate::layout::{EvalResult, LobeResult, RawBsdf, RawMaterial, SampleResult};
@@ -7,7 +7,7 @@ use glam::Vec3;
 use hairis::{FiberFrame, Hit, Lobe, LobeMask, PerLobe};
 use hairis_variants::ModelId;
 
-/// `hairis_frame`.
+/// Implements `hairis_frame`: computes the fibre's frame from a tangent and an optional normal.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_frame(
     tangent: *const [f32; 3],
@@ -25,7 +25,7 @@ pub unsafe extern "C" fn hairis_frame(
     unsafe { to.write(rows) };
 }
 
-/// `hairis_offset`.
+/// Implements `hairis_offset`: returns the offset of a hit across the fibre.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_offset(
     frame: *const [[f32; 3]; 3],
@@ -38,7 +38,7 @@ pub unsafe extern "C" fn hairis_offset(
     FiberFrame { u, v, w }.offset(Vec3::from(normal), Vec3::from(wo))
 }
 
-/// `hairis_prepare`.
+/// Implements `hairis_prepare`: prepares the BSDF of a material at a hit.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_prepare(
     to: *mut RawBsdf,
@@ -61,7 +61,7 @@ pub unsafe extern "C" fn hairis_prepare(
     });
 }
 
-/// `hairis_restrict`.
+/// Implements `hairis_restrict`: keeps only some lobes of a BSDF.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_restrict(raw: *mut RawBsdf, lobes: u32) {
     // SAFETY: the caller's promise.
@@ -84,7 +84,7 @@ pub unsafe extern "C" fn hairis_restrict(raw: *mut RawBsdf, lobes: u32) {
     });
 }
 
-/// `hairis_albedo`.
+/// Implements `hairis_albedo`: computes the directional albedo of each lobe.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_albedo(raw: *const RawBsdf, to: *mut [[f32; 3]; 4]) {
     // SAFETY: the caller's promise.
@@ -99,7 +99,7 @@ pub unsafe extern "C" fn hairis_albedo(raw: *const RawBsdf, to: *mut [[f32; 3]; 
     unsafe { to.write(albedo.unwrap_or_default().0) };
 }
 
-/// `hairis_eval_pdf`.
+/// Implements `hairis_eval_pdf`: evaluates value and density at one direction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_eval_pdf(
     raw: *const RawBsdf,
@@ -119,7 +119,7 @@ pub unsafe extern "C" fn hairis_eval_pdf(
     result.unwrap_or_default()
 }
 
-/// `hairis_lobes`.
+/// Implements `hairis_lobes`: evaluates each lobe at one direction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_lobes(
     raw: *const RawBsdf,
@@ -141,7 +141,7 @@ pub unsafe extern "C" fn hairis_lobes(
     unsafe { to.write(lobes.unwrap_or_default()) };
 }
 
-/// `hairis_sample`.
+/// Implements `hairis_sample`: draws one sample.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_sample(
     raw: *const RawBsdf,

@@ -1,4 +1,4 @@
-//! Models by name, parameters by field, materials: the calls that refuse with a sentence.
+//! Calls of set-up, which report errors in a sentence: models by name, parameters by field, and materials.
 
 use crate::handles::{assert_fits, material, model_of};
 use crate::layout::{
@@ -18,7 +18,7 @@ const _: () = assert!(
     "the header has room for all numbers"
 );
 
-/// A count as C has it: none is above 32.
+/// Converts a count to the type of the header; no count is above 32.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "a few fields, words and lobes"
@@ -27,32 +27,32 @@ const fn count(number: usize) -> u32 {
     number as u32
 }
 
-/// `hairis_abi_version`.
+/// Implements `hairis_abi_version`: returns the version of the interface.
 #[unsafe(no_mangle)]
 pub extern "C" fn hairis_abi_version() -> u32 {
     ABI_VERSION
 }
 
-/// `hairis_version`.
+/// Implements `hairis_version`: returns the version of the library as text.
 #[unsafe(no_mangle)]
 pub extern "C" fn hairis_version() -> *const c_char {
     concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
 }
 
-/// `hairis_level_name`.
+/// Implements `hairis_level_name`: copies the name of the instruction set that calls run on.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_level_name(to: *mut c_char, size: usize) -> usize {
     // SAFETY: the caller's promise.
     unsafe { copy(Level::detect().name(), to, size) }
 }
 
-/// `hairis_model_count`.
+/// Implements `hairis_model_count`: returns the number of models.
 #[unsafe(no_mangle)]
 pub extern "C" fn hairis_model_count() -> u32 {
     count(ModelId::ALL.len())
 }
 
-/// `hairis_model_describe`.
+/// Implements `hairis_model_describe`: describes the model of an index.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_model_describe(model: u32, to: *mut ModelInfo) -> i32 {
     let (Some(id), false) = (models::at(model), to.is_null()) else {
@@ -79,7 +79,7 @@ pub unsafe extern "C" fn hairis_model_describe(model: u32, to: *mut ModelInfo) -
     OK
 }
 
-/// `hairis_field_describe`.
+/// Implements `hairis_field_describe`: describes a field of a model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_field_describe(model: u32, field: u32, to: *mut FieldInfo) -> i32 {
     let fields = models::at(model).map_or(&[][..], ModelId::fields);
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn hairis_field_describe(model: u32, field: u32, to: *mut 
     OK
 }
 
-/// `hairis_preset_name`.
+/// Implements `hairis_preset_name`: copies the name of a preset.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_preset_name(
     model: u32,
@@ -131,7 +131,7 @@ pub unsafe extern "C" fn hairis_preset_name(
     name.map_or(0, |name| unsafe { copy(name, to, size) })
 }
 
-/// The parameters of values.
+/// Returns the values of a model's fields as parameters of the C interface.
 #[must_use]
 pub fn params_of(id: ModelId, values: &Values) -> Params {
     let mut params = Params {
@@ -150,11 +150,11 @@ pub fn params_of(id: ModelId, values: &Values) -> Params {
     params
 }
 
-/// The model and the values of parameters.
+/// Returns the model of parameters, and the values of its fields.
 ///
 /// # Errors
 ///
-/// The code of the refusal, if the parameters were not initialised.
+/// Returns the status code if the parameters were not initialised, and writes the reason to `error` unless that is null.
 pub unsafe fn values_of(
     params: *const Params,
     error: *mut Error,
@@ -173,14 +173,14 @@ pub unsafe fn values_of(
         let (numbers, after) = rest.split_at(field.kind.width());
         rest = after;
         if params.given >> index & 1 == 1 {
-            // The index and the count are those of the field.
+            // The field has this index and this count.
             let _ = values.set_at(index, numbers);
         }
     }
     Ok((id, values))
 }
 
-/// `hairis_params_init`.
+/// Implements `hairis_params_init`: initialises parameters from a preset or from the defaults.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_params_init(
     to: *mut Params,
@@ -249,7 +249,7 @@ pub unsafe extern "C" fn hairis_params_init(
     OK
 }
 
-/// Sets a field by `set`, and writes the parameters unless that refuses.
+/// Sets a field by calling `set`, and writes the parameters unless `set` returns an error.
 unsafe fn set(
     params: *mut Params,
     field: *const c_char,
@@ -294,7 +294,7 @@ unsafe fn set(
     }
 }
 
-/// `hairis_params_set`.
+/// Implements `hairis_params_set`: sets the numbers of a field.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_params_set(
     params: *mut Params,
@@ -325,7 +325,7 @@ pub unsafe extern "C" fn hairis_params_set(
     }
 }
 
-/// `hairis_params_set_word`.
+/// Implements `hairis_params_set_word`: sets the word of a field.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_params_set_word(
     params: *mut Params,
@@ -342,7 +342,7 @@ pub unsafe extern "C" fn hairis_params_set_word(
     }
 }
 
-/// Refuses a value out of its range.
+/// Writes the error of a value out of its range, and returns its status code.
 pub(crate) unsafe fn refuse_value(error: *mut Error, fault: &ParamError) -> i32 {
     let place = Fault {
         field: fault.field(),
@@ -353,7 +353,7 @@ pub(crate) unsafe fn refuse_value(error: *mut Error, fault: &ParamError) -> i32 
     unsafe { refuse(error, VALUE, &place, fault) }
 }
 
-/// The material of values: the only place that reads the energy which the host asks for.
+/// Makes a material from values. This is the only place that reads the energy which the host asks for.
 fn build<M: Registered>(
     values: &Values,
     energy: u32,
@@ -370,7 +370,7 @@ fn build<M: Registered>(
     }
 }
 
-/// `hairis_material_init`.
+/// Implements `hairis_material_init`: makes a material from parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_material_init(
     to: *mut RawMaterial,
@@ -408,7 +408,7 @@ pub unsafe extern "C" fn hairis_material_init(
     }
 }
 
-/// `hairis_material_max_albedo`.
+/// Implements `hairis_material_max_albedo`: returns the largest directional albedo of a material.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_material_max_albedo(from: *const RawMaterial) -> f32 {
     // SAFETY: the caller's promise.

@@ -1,10 +1,10 @@
-//! Strings of C, and refusals.
+//! Strings of C, and the errors that calls of set-up write.
 
 use crate::layout::Error;
 use core::ffi::{CStr, c_char};
 use core::fmt::{self, Write};
 
-/// A string of the host; `None` for null. Bytes that are not UTF-8 are the name of nothing.
+/// Reads a string of the host; returns `None` for null. Bytes that are not UTF-8 become a text that names nothing.
 pub(crate) unsafe fn string<'a>(text: *const c_char) -> Option<&'a str> {
     if text.is_null() {
         return None;
@@ -14,7 +14,7 @@ pub(crate) unsafe fn string<'a>(text: *const c_char) -> Option<&'a str> {
     Some(text.to_str().unwrap_or("\u{fffd}"))
 }
 
-/// Text in an array that ends in 0. What does not fit is left out, by whole characters.
+/// Text in an array that ends in 0. Characters that do not fit are left out as a whole.
 struct Text<'a> {
     to: &'a mut [c_char],
     len: usize,
@@ -39,7 +39,7 @@ impl Write for Text<'_> {
     }
 }
 
-/// Writes what is displayed to `to`, with a 0 behind it.
+/// Writes the displayed text to `to`, with a 0 behind it.
 fn write(to: &mut [c_char], text: &dyn fmt::Display) {
     let mut text_to = Text {
         to,
@@ -53,14 +53,14 @@ fn write(to: &mut [c_char], text: &dyn fmt::Display) {
     }
 }
 
-/// An array with the text, and 0 behind it.
+/// Returns an array with the text and a 0 behind it.
 pub(crate) fn array<const N: usize>(text: &str) -> [c_char; N] {
     let mut to = [0; N];
     write(&mut to, &text);
     to
 }
 
-/// Copies a name to `size` characters of the host, as `snprintf` does; the length of the name.
+/// Copies a name to `size` characters of the host, as `snprintf` does, and returns the length of the name.
 pub(crate) unsafe fn copy(name: &str, to: *mut c_char, size: usize) -> usize {
     if size > 0 && !to.is_null() {
         // SAFETY: the caller's promise. No name is longer than this.
@@ -72,7 +72,7 @@ pub(crate) unsafe fn copy(name: &str, to: *mut c_char, size: usize) -> usize {
     name.len()
 }
 
-/// Names between commas.
+/// List of names that displays as names separated by commas.
 pub(crate) struct List<I>(pub(crate) I);
 
 impl<'a, I: Iterator<Item = &'a str> + Clone> fmt::Display for List<I> {
@@ -85,7 +85,7 @@ impl<'a, I: Iterator<Item = &'a str> + Clone> fmt::Display for List<I> {
     }
 }
 
-/// Place of a refusal: the field, the number of it and its value.
+/// Place of an error: the field, the number at fault and its value.
 pub(crate) struct Fault<'a> {
     pub(crate) field: &'a str,
     pub(crate) number: Option<usize>,
@@ -93,7 +93,7 @@ pub(crate) struct Fault<'a> {
 }
 
 impl<'a> Fault<'a> {
-    /// A whole field, or an argument.
+    /// Makes the place of a whole field, or of an argument.
     pub(crate) const fn of(field: &'a str) -> Self {
         Self {
             field,
@@ -103,7 +103,7 @@ impl<'a> Fault<'a> {
     }
 }
 
-/// Writes the refusal where the host wants it, and returns its code.
+/// Writes the error unless the host passes null, and returns its code.
 pub(crate) unsafe fn refuse(
     error: *mut Error,
     code: i32,

@@ -1,4 +1,4 @@
-//! Runtime of a library without std.
+//! Runtime of a library without std: a panic handler that aborts, and a personality routine.
 
 unsafe extern "C" {
     fn abort() -> !;
@@ -10,8 +10,8 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     unsafe { abort() }
 }
 
-// Personality routine, which the compiled `core` names even where `panic` is `abort`: nothing calls it. Weak, so that the one of
-// another Rust library in the program counts, whichever the linker meets first; hidden, so that it is not exported.
+// Personality routine, which the compiled `core` names even where `panic` is `abort`, although nothing calls it. It is weak, so that
+// the routine of another Rust library in the program takes precedence in any link order, and hidden, so that it is not exported.
 #[cfg(not(any(windows, target_vendor = "apple")))]
 core::arch::global_asm!(
     ".weak rust_eh_personality",

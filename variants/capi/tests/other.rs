@@ -1,10 +1,10 @@
-//! Another Rust library with std: it allocates, and a panic in it unwinds.
+//! Another Rust library, which uses std: it allocates, and a panic in it unwinds.
 
-/// The length of a text, by way of the heap and of a panic that is caught.
+/// Returns the length of a text, after allocating it on the heap and catching a panic.
 ///
 /// # Safety
 ///
-/// The text ends in 0.
+/// The text must end in 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn other_length(text: *const core::ffi::c_char) -> i32 {
     // SAFETY: the caller's promise.

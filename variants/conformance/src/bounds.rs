@@ -1,4 +1,4 @@
-//! Energy and weights: albedo, furnace, bounds of weights, reciprocity.
+//! Properties of energy and weights: albedo, furnace, bounds of weights, reciprocity.
 
 use crate::cases::Property;
 use crate::cases::inputs::Inputs;
@@ -12,7 +12,7 @@ use core::cell::Cell;
 use hairis::simd::Level;
 use hairis::{Eval, LobeMask};
 
-/// Integral of `S cos theta_i` of one channel.
+/// Integrates `S cos theta_i` of one channel over the sphere.
 fn reflected(bsdf: &dyn ErasedBsdf, mesh: &Mesh, channel: usize) -> Integral {
     Integral::new(mesh, |wi, out| {
         let mut value = [const { Vec::new() }; 3].map(|mut v: Vec<f32>| {
@@ -32,11 +32,11 @@ fn reflected(bsdf: &dyn ErasedBsdf, mesh: &Mesh, channel: usize) -> Integral {
     })
 }
 
-/// `albedo` of each lobe is the integral of its `S cos theta_i` over the sphere.
+/// Checks that `albedo` of each lobe is the integral of its `S cos theta_i` over the sphere.
 ///
 /// # Errors
 ///
-/// At the first lobe where it is not.
+/// Returns the largest error if the albedo of a lobe is further off than `Claims::albedo` allows.
 pub fn albedo_is_the_integral(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "albedo is the integral of S cos theta_i";
     let claims = subject.claims();
@@ -70,12 +70,13 @@ pub fn albedo_is_the_integral(subject: &dyn ErasedSubject) -> Outcome {
     worst.report()
 }
 
-/// White materials return all light, where the model claims so: the albedos of the lobes sum to 1, and so does the integral
-/// of `S cos theta_i`.
+/// Checks that white materials return all light, if the model claims it: the albedos of the lobes sum to 1, and so does the integral of
+/// `S cos theta_i`.
 ///
 /// # Errors
 ///
-/// At the first hit where they do not, or if the model claims it without a white material.
+/// Returns the largest error if a sum is further off than `Claims::furnace` allows, or a failure if the model makes this claim without a
+/// white material.
 pub fn white_furnace(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "white materials return all light";
     let Some(tolerance) = subject.claims().furnace else {
@@ -117,11 +118,11 @@ pub fn white_furnace(subject: &dyn ErasedSubject) -> Outcome {
     integral.report()
 }
 
-/// No weight is above the bound that the model states, for all lobes and for some, where it states one.
+/// Checks that no weight, of all lobes and of some, is above the bound that the model states, if it states one.
 ///
 /// # Errors
 ///
-/// At the first weight above its bound.
+/// Returns a failure if a weight is above its bound.
 pub fn weights_are_bounded(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "weights are below their bound";
     let (closest, seen) = (Cell::new(0.0_f64), Cell::new(0_usize));
@@ -173,12 +174,12 @@ pub fn weights_are_bounded(subject: &dyn ErasedSubject) -> Outcome {
     Ok(())
 }
 
-/// S is the same with its two directions exchanged, where the model claims so: to its tolerance beyond what
+/// Checks that S is the same with its two directions exchanged, if the model claims it: to the tolerance of the claim beyond what
 /// rounding the directions changes.
 ///
 /// # Errors
 ///
-/// At the first pair of directions where it is not.
+/// Returns a failure if S differs for a pair of directions.
 pub fn eval_is_reciprocal(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "S is reciprocal";
     let claims = subject.claims();

@@ -1,4 +1,4 @@
-//! Random cases of properties: drawn from strategies, shrunk, and printed as code.
+//! Random cases of properties, which are drawn from strategies, shrunk, and printed as code.
 
 mod code;
 pub(crate) mod inputs;
@@ -19,29 +19,28 @@ use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use regressions::Regressions;
 use std::rc::Rc;
 
-/// Most steps of shrinking one case.
+/// Largest number of steps in which one case is shrunk.
 const STEPS: usize = 20_000;
 
-/// A shading point and queries of it.
+/// Shading point of a case, with the queries that a property makes of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Row<P> {
     /// Parameters of the material.
     pub material: P,
-    /// The hit, in the fibre's frame.
+    /// Hit in the fibre's frame.
     pub hit: Hit,
     /// Direction to evaluate.
     pub wi: Direction,
-    /// Numbers to sample with.
+    /// Uniform numbers to sample with.
     pub xi: [f32; 3],
-    /// Whether the tolerances of the claims apply: they are stated for materials that the subject
-    /// names.
+    /// True if the tolerances of the claims apply, which are stated only for materials that the subject names.
     pub tolerances: bool,
 }
 
-/// A case of a property: eight shading points, which fill the lanes of a packet.
+/// Case of a property: eight shading points, which fill the lanes of a packet.
 #[derive(Clone, Debug)]
 pub struct Case<P> {
-    /// Shading points.
+    /// Shading points, one per lane.
     pub rows: [Row<P>; 8],
     /// Lobes, for properties of masks.
     pub lobes: LobeMask,
@@ -50,7 +49,7 @@ pub struct Case<P> {
 }
 
 impl<P> Case<P> {
-    /// A case with the same shading point in all lanes, and all lobes.
+    /// Makes a case with the same shading point in all lanes, and all lobes.
     pub fn new(row: impl Fn() -> Row<P>) -> Self {
         Self {
             rows: core::array::from_fn(|_| row()),
@@ -65,13 +64,13 @@ impl<P> Case<P> {
 pub enum Source {
     /// Random numbers.
     Fresh,
-    /// The regressions of a test, then random numbers; a failure is added to the regressions.
+    /// The regressions of a test, then random numbers. A failure is added to the regressions.
     Kept(Regressions),
-    /// One case.
+    /// One case that a test contains as code.
     Pasted(Box<Case<Choice>>),
 }
 
-/// A subject with cases of another source than random numbers.
+/// Subject whose cases have another source than random numbers alone.
 ///
 /// A failing property prints its smallest case as code that ends in [`pasted`](Self::pasted).
 #[derive(Debug)]
@@ -81,7 +80,7 @@ pub struct Replay<'a, S> {
 }
 
 impl<'a, S: Subject> Replay<'a, S> {
-    /// The subject, whose properties run on this case alone.
+    /// Wraps a subject so that its properties run on this case alone.
     ///
     /// Properties that draw no cases, such as statistical tests, run as they always do.
     pub fn pasted(subject: &'a S, case: Case<crate::ParamsOf<S>>) -> Self {
@@ -97,8 +96,7 @@ impl<'a, S: Subject> Replay<'a, S> {
         Self { subject, source }
     }
 
-    /// The subject of a test, which keeps its regressions in the folder `proptest-regressions` of
-    /// its package.
+    /// Wraps the subject of a test, which keeps its regressions in the folder `proptest-regressions` of its package.
     #[doc(hidden)]
     pub fn kept(subject: &'a S, package: &str, test: &'static str) -> Self {
         let source = Source::Kept(Regressions::new(package, test));
@@ -138,13 +136,13 @@ impl<S: Subject> HitsSubject for Replay<'_, S> {
     }
 }
 
-/// A case with its materials made.
+/// Case whose materials have been made.
 pub(crate) struct Trial<'a> {
     set: Box<dyn MaterialSet + 'a>,
     pub(crate) hits: [Hit; 8],
     pub(crate) wi: [Direction; 8],
     pub(crate) xi: [[f32; 3]; 8],
-    /// Whether the tolerances of the claims apply.
+    /// True in the lanes in which the tolerances of the claims apply.
     pub(crate) tolerances: [bool; 8],
     pub(crate) lobes: LobeMask,
     pub(crate) order: [usize; 8],
@@ -168,13 +166,13 @@ impl<'a> Trial<'a> {
         (&*self.set as &dyn MaterialSet).get(lane)
     }
 
-    /// The shading points in the lanes of a packet, in this order.
+    /// Prepares the shading points in the lanes of a packet, in this order.
     pub(crate) fn prepare(&self, level: Level, order: [usize; 8]) -> Box<dyn ErasedBsdf8> {
         let hits = hits8(&order.map(|lane| self.hits[lane]));
         self.set.prepare_packed(order, level, &hits)
     }
 
-    /// Description of a lane.
+    /// Describes the shading point and the queries of a lane.
     pub(crate) fn at(&self, lane: usize, how: impl core::fmt::Display) -> String {
         let (name, hit, wi) = (self.material(lane).name(), self.hits[lane], self.wi[lane]);
         let xi = self.xi[lane];
@@ -182,7 +180,7 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// A property of random cases.
+/// Property that is tested on random cases.
 pub(crate) struct Property<'a> {
     pub(crate) name: &'static str,
     /// Module and name of the function.
@@ -190,13 +188,13 @@ pub(crate) struct Property<'a> {
     pub(crate) subject: &'a dyn ErasedSubject,
     pub(crate) which: Which,
     pub(crate) inputs: Inputs,
-    /// Whether tolerances apply at these inputs.
+    /// True if tolerances apply at these inputs.
     pub(crate) tolerances: bool,
-    /// Number of cases, without `HAIRIS_CASES`.
+    /// Number of cases, which `HAIRIS_CASES` multiplies.
     pub(crate) cases: usize,
 }
 
-/// The factor on the number of cases: 1, or that of the environment.
+/// Returns the factor on the number of cases: the one in the environment, or 1.
 pub(crate) fn case_factor() -> u32 {
     let text = std::env::var("HAIRIS_CASES").unwrap_or_else(|_| "1".to_owned());
     match text.parse() {
@@ -206,8 +204,8 @@ pub(crate) fn case_factor() -> u32 {
 }
 
 impl Property<'_> {
-    /// Runs `test` on every case, with the errors of these quantities against their tolerances: the
-    /// worst failure is shrunk, and the smallest case that fails is printed as code.
+    /// Runs `test` on every case, and compares the errors of these quantities with their tolerances. The worst failure is shrunk, and the
+    /// smallest case that fails is printed as code.
     pub(crate) fn check<const N: usize>(
         &self,
         quantities: [(&'static str, f64); N],
@@ -219,7 +217,7 @@ impl Property<'_> {
             let mut worst = zero.clone();
             let outcome = test(&Trial::new(self.subject, case), &mut worst);
             let excess = |worst: &Worst| worst.verdict().err();
-            // Of equal ones the first.
+            // Of equal failures, the first counts.
             let failures = worst.iter().rev().filter_map(excess);
             let failure = outcome
                 .err()
@@ -286,7 +284,7 @@ impl Property<'_> {
         })
     }
 
-    /// The case that was drawn, with its directions.
+    /// Completes a drawn case with the directions that have to be sampled.
     fn resolve(&self, (rows, lobes, order): &Drawn) -> Case<Choice> {
         let set = self.subject.set_of(rows.each_ref().map(|row| &row.0));
         let row = |lane: usize| {
@@ -314,7 +312,7 @@ impl Property<'_> {
     }
 }
 
-/// The case of a seed.
+/// Draws the case of a seed.
 fn new_tree<S: Strategy>(strategy: &S, seed: u64) -> S::Tree {
     let mut draws = Draws(seed);
     let bytes: [[u8; 8]; 4] = core::array::from_fn(|_| draws.unseeded().to_le_bytes());

@@ -1,4 +1,4 @@
-//! Random samples follow the density (chi-square test).
+//! Property that random samples follow the density (chi-square test).
 
 use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Failure, Outcome};
@@ -8,19 +8,19 @@ use crate::probe::{Draws, columns, hits};
 use crate::statistics::chi_square_tail;
 use hairis::LobeMask;
 
-/// Chance that a sound model fails, over all its runs.
+/// Probability that a sound model fails, over all its runs.
 const SIGNIFICANCE: f64 = 0.01;
-/// Cells of fewer expected samples are pooled; so are those of less than this share of all samples.
+/// Least number of expected samples in a cell: smaller cells are pooled, as are cells with less than `SHARE` of all samples.
 const LEAST: f64 = 5.0;
 const SHARE: f64 = 1.0 / 256.0;
 
-/// Pearson's chi-square test of random samples against the integral of the density over cells of inclination and azimuth.
+/// Checks random samples by Pearson's chi-square test against the integral of the density over cells of inclination and azimuth.
 ///
 /// A run is a material at a hit. The significance is 0.01 over all of them (Sidak).
 ///
 /// # Errors
 ///
-/// If a run is less probable than that, with its worst cells.
+/// Returns a failure with the worst cells if a run is less probable than the significance allows.
 pub fn samples_follow_density(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "samples follow the density";
     let (claims, materials) = (subject.claims(), subject.set(Which::Everyday));
@@ -80,7 +80,7 @@ pub fn samples_follow_density(subject: &dyn ErasedSubject) -> Outcome {
     Ok(())
 }
 
-/// Some rectangles of a row, from one to another.
+/// Rectangles of a row that are pooled, from one to another.
 struct Cell {
     from: usize,
     to: usize,
@@ -120,8 +120,8 @@ impl Cell {
     }
 }
 
-/// Neighbouring rectangles together, until each has enough expected samples; discarded samples are the last cell, if there
-/// are more or less of them than is `uncertain`.
+/// Pools neighbouring rectangles until each cell has enough expected samples. Discarded samples are the last cell, if their number
+/// differs from the expected one by more than `uncertain`.
 fn pooled(mass: &[f64], observed: &[u32], count: f64, discarded: f64, uncertain: f64) -> Vec<Cell> {
     let enough = (count * SHARE).max(LEAST);
     let mut cells: Vec<Cell> = Vec::new();
@@ -152,7 +152,7 @@ fn pooled(mass: &[f64], observed: &[u32], count: f64, discarded: f64, uncertain:
     }
     let expected = (count * (1.0 - mass.iter().sum::<f64>())).max(0.0);
     match cells.last_mut() {
-        // Below the error of the integral, which has a test of its own.
+        // A difference below the error of the integral, which has a test of its own.
         Some(last) if (expected - discarded).abs() <= uncertain => {
             last.expected += expected;
             last.observed += discarded;

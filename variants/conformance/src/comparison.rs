@@ -1,22 +1,22 @@
-//! Comparison of results with what is expected of them.
+//! Comparison of results with expected results.
 
-/// Error of `got` relative to `want`, or to `floor` where `want` is smaller.
+/// Returns the error of `got` relative to `want`, or relative to `floor` if `want` is smaller.
 #[must_use]
 pub fn relative(got: impl Into<f64>, want: f64, floor: f64) -> f64 {
     (got.into() - want).abs() / want.abs().max(floor)
 }
 
-/// The largest error of one quantity so far, and its place. NaN is the largest of all.
+/// Largest error of one quantity so far, and its place. NaN counts as the largest of all.
 #[derive(Clone, Debug, Default)]
 pub struct LargestError {
-    /// The error.
+    /// Largest error so far.
     pub error: f64,
-    /// Its place.
+    /// Place at which the largest error occurred.
     pub at: String,
 }
 
 impl LargestError {
-    /// Takes an error into account.
+    /// Takes an error into account, and calls `at` for its place if it is the largest so far.
     pub fn see(&mut self, error: f64, at: impl FnOnce() -> String) {
         if error > self.error || (error.is_nan() && !self.error.is_nan()) {
             *self = Self { error, at: at() };
@@ -27,7 +27,7 @@ impl LargestError {
     ///
     /// # Panics
     ///
-    /// If it is above the bound, or NaN.
+    /// Panics if the largest error is above the bound, or NaN.
     #[track_caller]
     pub fn check(&self, row: &str, bound: f64) {
         let Self { error, at } = self;

@@ -1,9 +1,9 @@
-//! Floating-point environments of hosts: results stay finite whichever way they are rounded, and everyday input raises no
+//! Properties of floating-point environments of hosts: results stay finite in every rounding mode, and everyday input raises no
 //! exception.
 //!
-//! The compiler takes the environment for the default one. At opt-levels 2 and 3 it may make vectors of scalar code, and compute
-//! in their unused lanes what raises an exception; divisions are kept from it ([`Lanes::quotient`](hairis::simd::Lanes::quotient)). Run
-//! these properties in a release build too. Only x86-64 is tested.
+//! The compiler assumes the default environment. At opt-levels 2 and 3 it may vectorise scalar code, and the unused lanes may then raise
+//! an exception. Divisions are protected from this ([`Lanes::quotient`](hairis::simd::Lanes::quotient)). Run these properties in a
+//! release build too. Only x86-64 is tested.
 
 use crate::cases::Property;
 use crate::cases::inputs::Inputs;
@@ -17,16 +17,16 @@ use hairis::simd::{Level, control, set_control};
 
 const NAME: &str = "results are finite however they are rounded";
 
-/// Rounding to nearest, down, up and towards 0, each with denormals and without.
+/// Control bits for rounding to nearest, down, up and towards 0, each with denormals and without.
 const MODES: [u32; 8] = [
     0x0000, 0x2000, 0x4000, 0x6000, 0x8040, 0xa040, 0xc040, 0xe040,
 ];
-/// Rounding down, without denormals.
+/// Control bits for rounding down, without denormals.
 pub(crate) const DOWN: u32 = MODES[5];
-/// Packets of eight materials.
+/// Number of packets of eight materials.
 const CASES: usize = 600;
 
-/// Runs `f` with rounding and denormals as in `mode`.
+/// Runs `f` with rounding and denormals as in `mode`, and restores the environment.
 pub(crate) fn with_mode<T>(mode: u32, f: impl FnOnce() -> T) -> T {
     let before = control();
     set_control(before & !0xe040 | mode);
@@ -35,10 +35,10 @@ pub(crate) fn with_mode<T>(mode: u32, f: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Exceptions by the bits of their flags.
+/// Flags of exceptions, with the names of the exceptions.
 const FLAGS: [(u32, &str); 3] = [(1, "invalid"), (4, "division by zero"), (8, "overflow")];
 
-/// Flags of the exceptions that `f` raises, of those in [`FLAGS`].
+/// Returns the flags of the exceptions that `f` raises, among those in [`FLAGS`].
 fn raised<T>(f: impl FnOnce() -> T) -> u32 {
     let before = control();
     set_control(before & !0x3f);
@@ -48,7 +48,7 @@ fn raised<T>(f: impl FnOnce() -> T) -> u32 {
     after & (FLAGS[0].0 | FLAGS[1].0 | FLAGS[2].0)
 }
 
-/// Names of exceptions. Not generic, so compiled once.
+/// Returns the names of exceptions. Not generic, so that it is compiled once.
 fn names(flags: u32) -> String {
     let names: Vec<&str> = FLAGS
         .into_iter()
@@ -58,8 +58,8 @@ fn names(flags: u32) -> String {
     names.join(", ")
 }
 
-/// Fails if `f` raises an exception, and raises it again. Flags also appear by themselves: on a
-/// host where one run in four found a flag, the same calls with traps enabled never trapped.
+/// Fails if `f` raises an exception twice in a row. A single flag is not enough, because flags also appear spontaneously: on a host where
+/// one run in four found a flag, the same calls with traps enabled never trapped.
 fn quiet<T>(what: &str, at: impl FnOnce() -> String, mut f: impl FnMut() -> T) -> Outcome {
     let mut flags = raised(&mut f);
     if flags != 0 {
@@ -79,12 +79,12 @@ fn exceptions(what: &str, flags: u32, at: &str) -> Failure {
     )
 }
 
-/// Results for unit directions are finite and not negative in all four rounding modes, with denormals and without: on one lane,
-/// on eight, and in slices.
+/// Checks that results for unit directions are finite and not negative in all four rounding modes, with denormals and without: on one
+/// lane, on eight, and in slices.
 ///
 /// # Errors
 ///
-/// At the first result that is not.
+/// Returns a failure if a result is negative or not finite.
 pub fn any_rounding_is_finite(subject: &dyn ErasedSubject) -> Outcome {
     let in_mode = |mode: u32, failure: Failure| Failure {
         property: NAME,
@@ -154,12 +154,12 @@ fn slices_are_finite(subject: &dyn ErasedSubject) -> Outcome {
     Ok(())
 }
 
-/// Unit directions off the axis raise neither invalid nor division by zero nor overflow where eight lanes are prepared, evaluated
-/// and sampled, in slices of values, and on one lane, if the material scatters at all.
+/// Checks that unit directions off the axis raise neither invalid nor division by zero nor overflow, if the material scatters at all. The
+/// calls prepare, evaluate and sample eight lanes, evaluate slices, and run on one lane.
 ///
 /// # Errors
 ///
-/// At the first call that raises one.
+/// Returns a failure if a call raises one of these exceptions.
 pub fn everyday_input_raises_no_exception(subject: &dyn ErasedSubject) -> Outcome {
     let property = Property {
         name: "everyday input raises no exception",

@@ -1,6 +1,6 @@
 //! Subjects, materials and shading points without their types.
 //!
-//! Properties take these, so that each is compiled once; the calls below are compiled once per model.
+//! Properties take these trait objects, so that each property is compiled once. The calls below are compiled once per model.
 
 pub(crate) mod hits;
 
@@ -17,20 +17,20 @@ use hairis::{Bsdf, Bsdf8, Hit, Hit8, Lobe, LobeMask, Material, Material8};
 use proptest::prelude::*;
 use std::rc::Rc;
 
-/// A direction, or any vector, in the fibre's frame.
+/// Direction, or any vector, in the fibre's frame.
 pub(crate) type Direction = Vec3;
 
-/// A [`Subject`] without its model's type: pass a reference to any subject.
+/// [`Subject`] without the type of its model. Every subject implements it, so pass a reference to any subject.
 pub trait ErasedSubject {
-    /// See [`Subject::claims`].
+    /// Returns the claims of the model: see [`Subject::claims`].
     #[doc(hidden)]
     fn claims(&self) -> Claims;
-    /// Names of the model's lobes.
+    /// Returns the names of the model's lobes.
     #[doc(hidden)]
     fn lobe_names(&self) -> &'static [&'static str];
     #[doc(hidden)]
     fn set(&self, which: Which) -> Box<dyn MaterialSet + '_>;
-    /// Materials to draw from.
+    /// Returns the strategy that draws materials.
     #[doc(hidden)]
     fn choices(&self, which: Which) -> Choices;
     #[doc(hidden)]
@@ -49,7 +49,7 @@ pub struct Choice {
     code: Rc<str>,
 }
 
-/// Name of materials that have none.
+/// Name of materials that the subject does not name.
 const ANY: &str = "any material";
 
 impl Choice {
@@ -62,7 +62,7 @@ impl Choice {
         self.name != ANY
     }
 
-    /// Code of the parameters; `subject` is the subject of the test.
+    /// Returns the code of the parameters, in which `subject` is the subject of the test.
     pub(crate) fn code(&self) -> &str {
         &self.code
     }
@@ -74,26 +74,26 @@ impl fmt::Debug for Choice {
     }
 }
 
-/// Materials of a subject.
+/// Selection of the materials of a subject.
 #[derive(Clone, Copy, Debug)]
 pub enum Which {
-    /// [`Subject::materials`].
+    /// Materials of [`Subject::materials`].
     Everyday,
-    /// Materials of the subject, with [`Subject::extremes`]; to draw from, any legal ones as well.
+    /// Materials of the subject, with [`Subject::extremes`]. Draws add any legal material.
     WithExtremes,
-    /// The everyday ones, and [`Subject::random_materials`].
+    /// Everyday materials, with [`Subject::random_materials`].
     WithRandom,
-    /// [`Subject::white`].
+    /// Materials of [`Subject::white`].
     White,
 }
 
 impl dyn ErasedSubject + '_ {
-    /// Number of the model's lobes.
+    /// Returns the number of the model's lobes.
     pub(crate) fn lobe_count(&self) -> usize {
         self.lobe_names().len()
     }
 
-    /// Name of a lobe.
+    /// Returns the name of a lobe.
     pub(crate) fn lobe(&self, lobe: Lobe) -> &'static str {
         self.lobe_names()
             .get(lobe.index())
@@ -101,7 +101,7 @@ impl dyn ErasedSubject + '_ {
             .unwrap_or("no lobe")
     }
 
-    /// Names of the lobes of a mask.
+    /// Returns the names of the lobes of a mask.
     pub(crate) fn lobes(&self, mask: LobeMask) -> String {
         if mask == LobeMask::ALL {
             return "all lobes".to_owned();
@@ -111,12 +111,12 @@ impl dyn ErasedSubject + '_ {
         format!("lobes [{}]", names.join(", "))
     }
 
-    /// The slots that the model names.
+    /// Returns the slots that the model names.
     pub(crate) fn slots(&self) -> impl Iterator<Item = Lobe> + use<> {
         Lobe::ALL.into_iter().take(self.lobe_count())
     }
 
-    /// Each lobe alone, and all together.
+    /// Returns a mask for each lobe alone, and one for all together.
     pub(crate) fn parts(&self) -> impl Iterator<Item = LobeMask> + use<> {
         self.slots()
             .map(|lobe| LobeMask::of(&[lobe]))
@@ -172,7 +172,7 @@ impl<S: Subject> ErasedSubject for S {
     }
 }
 
-/// Materials of one model, by index.
+/// Materials of one model, which are accessed by index.
 pub trait MaterialSet {
     fn len(&self) -> usize;
     fn name(&self, index: usize) -> &'static str;
@@ -194,7 +194,7 @@ impl dyn MaterialSet + '_ {
     }
 }
 
-/// One material of a set.
+/// Material of a set, with its index.
 #[derive(Clone, Copy)]
 pub(crate) struct NamedMaterial<'a> {
     set: &'a dyn MaterialSet,
@@ -214,7 +214,7 @@ impl NamedMaterial<'_> {
         self.set.prepare8(self.index, level, &hits)
     }
 
-    /// Eight hits on eight materials of one set.
+    /// Prepares eight hits on eight materials of one set.
     pub(crate) fn prepare_packed(
         materials: [Self; 8],
         level: Level,
@@ -238,7 +238,7 @@ impl NamedMaterial<'_> {
     }
 }
 
-/// Materials of one model, with its types.
+/// Materials of one model, with the types of the model.
 pub(crate) struct Set<'s, S: Subject> {
     subject: &'s S,
     names: Vec<&'static str>,
@@ -246,10 +246,10 @@ pub(crate) struct Set<'s, S: Subject> {
     pub(crate) materials: Vec<Material<S::Model>>,
 }
 
-/// Name, parameters and their code.
+/// Name and parameters of a material, with the code of the parameters.
 type Described<S> = (&'static str, ParamsOf<S>, String);
 
-/// Materials that a subject names.
+/// Returns the materials that a subject names.
 fn described<S: Subject>(subject: &S, which: Which) -> Vec<Described<S>> {
     let list = |function: &str, materials: Vec<(&'static str, ParamsOf<S>)>| {
         let each = materials.into_iter().enumerate();
@@ -335,7 +335,7 @@ impl<S: Subject> MaterialSet for Set<'_, S> {
     }
 }
 
-/// Columns of a sample: direction, value, density, weight, slot.
+/// Number of columns of a sample: direction, value, density, weight, slot.
 pub(crate) const COLUMNS: usize = 11;
 
 /// Places of the columns that a path tracer needs among those of a sample.
@@ -396,7 +396,7 @@ macro_rules! with {
 }
 with! { ErasedBsdf ErasedBsdf8 }
 
-/// Calls on columns by array.
+/// Calls on columns, which are passed as arrays.
 impl dyn ErasedBsdf + '_ {
     pub(crate) fn eval_array(&self, wi: [&[f32]; 3], out: [&mut [f32]; 4]) -> ColumnResult {
         let [r, g, b, pdf] = out;

@@ -1,19 +1,19 @@
-//! Failures of properties.
+//! Failures and outcomes of properties.
 
 use crate::comparison::LargestError;
 use core::fmt;
 
-/// Failure of a property: the query, its place, the result and the expectation.
+/// Failure of a property, with the query, its place, the result and the expectation.
 #[derive(Clone, PartialEq)]
 pub struct Failure {
-    /// Name of the property.
+    /// Name of the property that failed.
     pub property: &'static str,
-    /// Material, directions, numbers, lane and level, and the results got and wanted.
+    /// Material, directions, numbers, lane and level, and the results that were returned and expected.
     pub message: String,
-    /// The smallest case that fails, as a block of code whose value is the outcome of the property;
-    /// `subject` is the subject under test. `None` if the property draws no cases.
+    /// Smallest case that fails, as a block of code whose value is the outcome of the property; `subject` is the subject under test.
+    /// `None` if the property draws no cases.
     pub case: Option<String>,
-    /// Error over its tolerance; infinite where there is none.
+    /// Error divided by its tolerance, or infinite if there is no tolerance.
     pub(crate) excess: f64,
 }
 
@@ -49,16 +49,16 @@ impl fmt::Debug for Failure {
 
 impl core::error::Error for Failure {}
 
-/// Whether a property holds.
+/// Outcome of a property: an error if it does not hold.
 pub type Outcome = Result<(), Failure>;
 
-/// Outcome of a property that belongs to a claim that the subject does not make.
+/// Returns the outcome of a property that belongs to a claim that the subject does not make.
 pub(crate) fn not_claimed(property: &str, claim: &str) -> Outcome {
     println!("{property}: not claimed (`{claim}`)");
     Ok(())
 }
 
-/// The largest error of one quantity against its tolerance.
+/// Largest error of one quantity, with its tolerance.
 #[derive(Clone)]
 pub(crate) struct Worst {
     property: &'static str,
@@ -68,7 +68,7 @@ pub(crate) struct Worst {
 }
 
 impl Worst {
-    /// No error yet of a quantity; `what` names it, and the claim that states the tolerance.
+    /// Makes a quantity without errors; `what` names the quantity, and the claim that states its tolerance.
     pub(crate) fn new(property: &'static str, what: &'static str, tolerance: f64) -> Self {
         Self {
             property,
@@ -78,19 +78,19 @@ impl Worst {
         }
     }
 
-    /// Takes an error into account, and its place if it is above the tolerance.
+    /// Takes an error into account, and its place if the error is above the tolerance.
     pub(crate) fn see(&mut self, error: f64, at: impl FnOnce() -> String) {
         let is_allowed = error <= self.tolerance;
         let place = || if is_allowed { String::new() } else { at() };
         self.largest.see(error, place);
     }
 
-    /// Takes the errors of another.
+    /// Takes the largest error of another `Worst` into account.
     pub(crate) fn merge(&mut self, other: Self) {
         self.see(other.largest.error, || other.largest.at);
     }
 
-    /// Fails if the largest error is above the tolerance or not a number.
+    /// Returns a failure if the largest error is above the tolerance or NaN.
     pub(crate) fn verdict(&self) -> Outcome {
         let Self {
             property,
@@ -113,7 +113,7 @@ impl Worst {
         })
     }
 
-    /// Prints the largest error, for the record of a tolerance, and fails if it is above that.
+    /// Prints the largest error, for the record of a tolerance, and returns a failure if it is above the tolerance.
     pub(crate) fn report(self) -> Outcome {
         let Self {
             property,

@@ -1,4 +1,4 @@
-//! Slices of hits give the bits of packets, whatever their length, alignment, materials and columns.
+//! Property that slices of hits give the bits of packets, for every length, alignment, material and choice of columns.
 
 use crate::environment::{DOWN, with_mode};
 use crate::erased::hits::{Columns, HitMaterials, HitsCall, HitsSet, HitsSubject};
@@ -12,9 +12,9 @@ use hairis::columns::{EvalColumns, HitColumns, HitsError, LengthError, SampleCol
 use hairis::simd::Level;
 
 const NAME: &str = "slices of hits give the bits of packets";
-/// Two packets of the widest level, and some.
+/// Length of the longest slices: two packets of the widest level, and a few rows more.
 const LONGEST: usize = 69;
-/// Which of value and density, or of direction, value, density, weight and slot, are asked for.
+/// Requested columns: value and density of an evaluation, or direction, value, density, weight and slot of a sample.
 const EVAL_CHOICES: [[bool; 2]; 3] = [[true, true], [true, false], [false, true]];
 const SAMPLE_CHOICES: [[bool; 5]; 4] = [
     [true; 5],
@@ -23,15 +23,16 @@ const SAMPLE_CHOICES: [[bool; 5]; 4] = [
     [false; 5],
 ];
 
-/// Slices of hits give the bits that [`Material8::prepare8`](hairis::Material8::prepare8) and then eight lanes give: evaluated,
-/// sampled, or both in one call, on one material and on a table of materials in runs and at random. Without `h`, they are hits on
-/// the axis. Columns that are left out are not written, nor is anything beyond a slice. Slices of different lengths and indices
-/// beyond the table are refused, and then nothing is written. Where the host rounds down and takes denormals for 0, results are
-/// finite and not negative.
+/// Checks that slices of hits give the bits of [`Material8::prepare8`](hairis::Material8::prepare8) followed by eight lanes. They are
+/// evaluated, sampled, or both in one call, on one material and on a table of materials in runs and at random.
+///
+/// Without `h`, hits are on the axis. Columns that are left out are not written, nor is anything beyond a slice. Slices of different
+/// lengths and indices beyond the table are rejected, and then nothing is written. If the host rounds down and takes denormals for 0,
+/// results are finite and not negative.
 ///
 /// # Errors
 ///
-/// At the first entry that differs.
+/// Returns the first entry that differs.
 pub fn hits_equal_packets(subject: &dyn HitsSubject) -> Outcome {
     let mut draws = Draws(0x417);
     let set = &*subject.hits();
@@ -60,7 +61,7 @@ pub fn hits_equal_packets(subject: &dyn HitsSubject) -> Outcome {
     arguments_are_checked(set)
 }
 
-/// Values, densities and weights are finite and not negative.
+/// Checks that values, densities and weights are finite and not negative if the host rounds down.
 fn any_rounding_is_finite(set: &dyn HitsSet) -> Outcome {
     let mut draws = Draws(0x418);
     let rows: Vec<Row> = (0..LONGEST).map(|_| Row::new(&mut draws)).collect();
@@ -102,7 +103,7 @@ fn any_rounding_is_finite(set: &dyn HitsSet) -> Outcome {
     Ok(())
 }
 
-/// Indices in runs of every length up to 20.
+/// Draws indices of materials in runs of every length up to 20.
 fn indices(draws: &mut Draws, len: usize, materials: usize) -> Vec<u32> {
     let mut index = Vec::new();
     while index.len() < len {
@@ -114,7 +115,7 @@ fn indices(draws: &mut Draws, len: usize, materials: usize) -> Vec<u32> {
     index
 }
 
-/// A hit, and what it is asked.
+/// Hit with its queries.
 #[derive(Clone, Copy)]
 struct Row {
     hit: Hit,
@@ -172,7 +173,7 @@ impl Slices {
         [0, 1, 2].map(|n| &self.columns[from + n][self.offset..])
     }
 
-    /// The arguments of a call for these results.
+    /// Returns the arguments of a call for these results.
     fn call<'a>(&'a self, out: Columns<'a>) -> HitsCall<'a> {
         let hits = HitColumns {
             wo: self.three(0),
@@ -190,7 +191,7 @@ impl Slices {
         call: impl Fn(Columns<'_>) -> Result<(), HitsError>,
     ) -> Outcome {
         let refused = |e: HitsError| Failure::new(NAME, format!("{e}: {at}"));
-        // Alone, and each choice of the one together with a choice of the other.
+        // Each choice alone, and each evaluation together with each sample.
         let alone = EVAL_CHOICES.map(|evals| (Some(evals), None));
         let samples = SAMPLE_CHOICES.map(|samples| (None, Some(samples)));
         let evals = EVAL_CHOICES.into_iter().chain([[false; 2]]);
@@ -221,7 +222,7 @@ impl Slices {
     }
 }
 
-/// Room for the columns of an evaluation that are asked for.
+/// Returns room for the requested columns of an evaluation.
 fn evaluated(room: &mut Room<4>, [value, pdf]: [bool; 2]) -> EvalColumns<'_> {
     let [r, g, b, density] = room.slices();
     EvalColumns {
@@ -230,7 +231,7 @@ fn evaluated(room: &mut Room<4>, [value, pdf]: [bool; 2]) -> EvalColumns<'_> {
     }
 }
 
-/// Room for the columns of samples that are asked for.
+/// Returns room for the requested columns of samples.
 fn sampled(
     room: &mut Room<COLUMNS>,
     [wi, value, pdf, weight, slot]: [bool; 5],
@@ -245,7 +246,7 @@ fn sampled(
     }
 }
 
-/// The results with the columns that are not asked for untouched.
+/// Returns the expected results, in which the columns that are not requested are untouched.
 fn chosen<const N: usize>(results: &[[u32; N]], asked: [bool; N]) -> Vec<[u32; N]> {
     let row = |row: &[u32; N]| {
         core::array::from_fn(|n| {
@@ -291,7 +292,7 @@ impl Expected {
     }
 }
 
-/// A slice of another length is refused by its name, an index by its place, and nothing is written.
+/// Checks that a slice of another length is rejected by its name and an index by its place, and that nothing is written.
 fn arguments_are_checked(set: &dyn HitsSet) -> Outcome {
     const NAMES: [&str; 8] = ["index", "wo.v", "wo.w", "h", "wi.u", "wi.v", "wi.w", "pdf"];
     let refused_as = |want: HitsError, lens: [usize; 8], index: u32| {

@@ -1,4 +1,4 @@
-//! The density integrates to the share of samples that are kept: of all lobes, and of each alone.
+//! Property that the density of all lobes, and of each alone, integrates to the share of samples that are kept.
 
 use crate::erased::{Direction, ErasedBsdf, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
@@ -21,22 +21,22 @@ const RULE: [[f64; 3]; 7] = [
     [0.960_491_268_708_020_3, 0.104_656_226_026_467_27, 0.0],
 ];
 const POINTS: usize = RULE.len() * RULE.len();
-/// Rectangles whose error is below this are not divided further. The rule is far better than its error.
+/// Largest error of a rectangle that is not divided further. The rule is far more accurate than this estimate of its error.
 const ERROR: f64 = 1e-7;
-/// Rectangles are halved at most so often.
+/// Largest number of times that a rectangle is halved.
 const DEPTH: u32 = 24;
-/// Rectangles that are integrated in one call.
+/// Number of rectangles that are integrated in one call.
 const ROW: usize = 16;
 
 /// Integral of a function over each rectangle of a mesh.
 pub(crate) struct Integral {
-    /// By inclination, then azimuth.
+    /// Integrals of the rectangles, by inclination, then azimuth.
     pub(crate) mass: Vec<f64>,
-    /// Error of what could not be resolved.
+    /// Error of the rectangles that could not be resolved.
     pub(crate) unresolved: f64,
 }
 
-/// A rectangle, the one of the mesh it is part of, and how often that was halved.
+/// Rectangle to integrate, with the rectangle of the mesh it is part of, and the number of times that was halved.
 #[derive(Clone, Copy)]
 struct Rectangle {
     theta: [f64; 2],
@@ -46,9 +46,9 @@ struct Rectangle {
 }
 
 impl Integral {
-    /// Integrates `f`, which is given directions by component, times the cosine of their inclination.
+    /// Integrates `f`, which takes directions by component, times the cosine of their inclination.
     ///
-    /// Each rectangle is halved, along the angle whose error is larger, until its error is small.
+    /// Each rectangle is halved along the angle with the larger error, until its error is small.
     pub(crate) fn new(mesh: &Mesh, mut f: impl FnMut([&[f32]; 3], &mut [f32])) -> Self {
         let [rows, width] = mesh.size();
         let mut todo: Vec<Rectangle> = (0..rows * width)
@@ -94,7 +94,7 @@ impl Integral {
         integral
     }
 
-    /// Adds what a rectangle has, or puts off its halves.
+    /// Adds the integral of a rectangle, or queues its halves.
     fn add(
         &mut self,
         rectangle: &Rectangle,
@@ -120,7 +120,7 @@ impl Integral {
         let [by_theta, by_phi] =
             [coarse_theta, coarse_phi].map(|coarse| area * (fine - coarse).abs());
         let error = by_theta.max(by_phi);
-        // NaN is not divided: the sum is NaN then.
+        // NaN is not divided, so that the sum becomes NaN.
         if error > ERROR && rectangle.depth < DEPTH {
             let halves = |[lo, hi]: [f64; 2]| [[lo, 0.5 * (lo + hi)], [0.5 * (lo + hi), hi]];
             let depth = rectangle.depth + 1;
@@ -143,7 +143,7 @@ impl Integral {
         self.unresolved += if error > ERROR { error } else { 0.0 };
     }
 
-    /// The density of a shading point.
+    /// Integrates the density of a shading point.
     pub(crate) fn density(bsdf: &dyn ErasedBsdf, mesh: &Mesh) -> Self {
         Self::new(mesh, |wi, out| {
             let written = bsdf.with_level(Level::detect()).pdf_array(wi, out);
@@ -154,14 +154,14 @@ impl Integral {
         })
     }
 
-    /// The whole integral.
+    /// Returns the whole integral.
     pub(crate) fn total(&self) -> f64 {
         self.mass.iter().sum()
     }
 }
 
 impl Rectangle {
-    /// Writes the directions of the rule's points; returns the cosines of their inclinations.
+    /// Writes the directions of the rule's points, and returns the cosines of their inclinations.
     fn nodes(&self, [u, v, w]: [&mut [f32]; 3]) -> [f64; RULE.len()] {
         let at = |[lo, hi]: [f64; 2], x: f64| 0.5 * (lo + hi) + 0.5 * (hi - lo) * x;
         let azimuths = RULE.map(|[x, ..]| at(self.phi, x).sin_cos());
@@ -180,12 +180,13 @@ impl Rectangle {
     }
 }
 
-/// The density of each lobe alone, and of all together, integrates to the share of samples that are not discarded, and
-/// few are.
+/// Checks that the density of each lobe alone, and of all together, integrates to the share of samples that are not discarded, and that
+/// few samples are discarded.
 ///
 /// # Errors
 ///
-/// At the first hit where it does not.
+/// Returns the largest error if an integral differs from that share by more than the tolerance or if too many samples are discarded, or a
+/// failure if quadrature cannot resolve the density.
 pub fn density_integrates_to_one(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "the density integrates to 1";
     let claims = subject.claims();

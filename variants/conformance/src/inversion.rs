@@ -1,5 +1,5 @@
-//! Samples of Sobol points have the distribution of the density, to the evenness of the points: far sharper than random
-//! samples.
+//! Property that samples of Sobol points have the distribution of the density, to the evenness of the points. This is a far sharper test
+//! than random samples.
 
 use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Outcome, Worst};
@@ -7,15 +7,16 @@ use crate::integral::Integral;
 use crate::mesh::{Mesh, Samples};
 use crate::probe::{columns, hits, sobol};
 
-/// Points are less even in two dimensions than in one.
+/// Factor on the tolerance for two dimensions, in which the points are less even than in one.
 const BOTH: f64 = 4.0;
 
-/// The cumulative distribution of samples of Sobol points is that of the density: in inclination, in azimuth, and
-/// in both, to four times the tolerance. Each lobe alone, and all together, so that a lobe drawn with the wrong probability shows, too.
+/// Checks that the cumulative distribution of samples of Sobol points is that of the density: in inclination, in azimuth, and in both, to
+/// four times the tolerance. Each lobe is tested alone and all are tested together, so that a lobe drawn with the wrong probability
+/// shows.
 ///
 /// # Errors
 ///
-/// At the first hit where it is not.
+/// Returns the largest error if a distribution differs by more than the tolerance.
 pub fn even_points_invert_density(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "even points invert the density";
     let claims = subject.claims();
@@ -38,7 +39,7 @@ pub fn even_points_invert_density(subject: &dyn ErasedSubject) -> Outcome {
                 let bsdf = all.with_lobes(mask);
                 let mesh = Mesh::new(subject, material, &hit, &*bsdf, mask);
                 let [rows, width] = mesh.size();
-                // Samples less expected.
+                // Share of the samples less the expected share.
                 let mut mass: Vec<f64> = Integral::density(&*bsdf, &mesh)
                     .mass
                     .iter()

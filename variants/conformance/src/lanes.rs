@@ -1,4 +1,4 @@
-//! Eight lanes give the results of one, whatever their position and on every level.
+//! Properties of eight lanes: they give the results of one lane, whatever their position and on every level.
 
 use crate::cases::inputs::Inputs;
 use crate::cases::{Property, Trial};
@@ -14,10 +14,10 @@ use hairis::{Eval, Eval8, Hit, Lobe, PerLobe, Sample8};
 
 const ORDER: [usize; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
 
-/// Packets of mixed materials.
+/// Number of packets of mixed materials.
 const ROUNDS: usize = 2000;
 
-/// A property of eight materials of the subject at a time.
+/// Makes a property of eight materials of the subject at a time.
 fn mixed<'a>(
     name: &'static str,
     path: &'static str,
@@ -35,7 +35,7 @@ fn mixed<'a>(
     }
 }
 
-/// Every number of one lane of a packet of samples.
+/// Returns the bits of every number of one lane of a packet of samples.
 pub(crate) fn sample_bits(s: &Sample8, lane: usize) -> [u32; 11] {
     let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
     [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot]
@@ -46,18 +46,18 @@ pub(crate) fn eval_bits(e: Eval) -> [u32; 4] {
     [e.value[0], e.value[1], e.value[2], e.pdf].map(f32::to_bits)
 }
 
-/// Whether a level has to give the bits of one lane.
+/// Returns true if a level has to give the bits of one lane.
 fn same_bits(claims: &Claims, level: Level) -> bool {
     claims.same_bits && !level.fuses()
 }
 
-/// Each of eight lanes, with a material, hit, direction and numbers of its own, gives the results of one lane: the same
-/// bits on levels that do not fuse, and close ones on those that do. So do eight lanes at one hit, and `lane` of eight
-/// shading points.
+/// Checks that each of eight lanes, with its own material, hit, direction and numbers, gives the results of one lane. The bits are the
+/// same on levels that do not fuse, and the results are close on those that do. The same holds for eight lanes at one hit, and for `lane`
+/// of eight shading points.
 ///
 /// # Errors
 ///
-/// At the first lane that differs.
+/// Returns a failure if a lane differs.
 pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "eight lanes give the results of one";
     let claims = subject.claims();
@@ -66,7 +66,7 @@ pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
         inputs: Inputs::Everyday,
         ..mixed(NAME, "lanes::lanes_equal_scalar", subject, ROUNDS)
     };
-    // Bits are the same at the ends of every range, but there a rounding may discard a sample.
+    // Bits are the same at the ends of every range, but on other levels a rounding may discard a sample there.
     let awkward = Property {
         inputs: Inputs::Awkward,
         tolerances: false,
@@ -135,11 +135,11 @@ pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
     awkward.check([quantity], test)
 }
 
-/// Permuting the lanes permutes the results, bit for bit: lanes do not mix, and none is special.
+/// Checks that permuting the lanes permutes the results, bit for bit: lanes do not mix, and none is special.
 ///
 /// # Errors
 ///
-/// At the first lane that differs.
+/// Returns a failure if a lane differs.
 pub fn lanes_permute(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "permuted lanes permute the results";
     let property = mixed(NAME, "lanes::lanes_permute", subject, ROUNDS);
@@ -175,7 +175,7 @@ pub fn lanes_permute(subject: &dyn ErasedSubject) -> Outcome {
     })
 }
 
-/// Bits of a lane of lobes.
+/// Returns the bits of a lane of lobes.
 fn lobe_bits(lobes: &PerLobe<LobeEval8>, lane: usize) -> [[u32; 5]; 4] {
     lobes.0.map(|lobe| {
         let [r, g, b] = lobe.color;
@@ -183,7 +183,7 @@ fn lobe_bits(lobes: &PerLobe<LobeEval8>, lane: usize) -> [[u32; 5]; 4] {
     })
 }
 
-/// Bits of a lane of albedos.
+/// Returns the bits of a lane of albedos.
 fn albedo_bits(albedo: &PerLobe<[f32x8; 3]>, lane: usize) -> [[u32; 3]; 4] {
     let bits = |x: f32x8| x.as_array()[lane].to_bits();
     albedo.0.map(|color| color.map(bits))
@@ -202,12 +202,12 @@ fn all_bits(evals: &Eval8, samples: &Sample8, lobes: &PerLobe<LobeEval8>) -> All
     })
 }
 
-/// One material and hit in all eight lanes is the same as one shared by them, bit for bit, and levels that fuse alike give
-/// the same bits.
+/// Checks that one material and hit repeated in all eight lanes gives the bits of one that the lanes share, and that levels that fuse
+/// alike give the same bits.
 ///
 /// # Errors
 ///
-/// At the first lane that differs.
+/// Returns a failure if a lane differs.
 pub fn levels_agree(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "packed and shared materials, and levels that fuse alike, agree";
     let property = mixed(NAME, "lanes::levels_agree", subject, ROUNDS / 2);
@@ -257,11 +257,12 @@ pub fn levels_agree(subject: &dyn ErasedSubject) -> Outcome {
     })
 }
 
-/// Lobes and albedos of eight lanes are those of one; a model that does not read [`Hit::h`] gives the same bits for every `h`.
+/// Checks that lobes and albedos of eight lanes are those of one lane, and that a model that does not read [`Hit::h`] gives the same bits
+/// for every `h`.
 ///
 /// # Errors
 ///
-/// At the first lane that differs.
+/// Returns a failure if a lane differs.
 pub fn lobes_and_albedo_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "lobes and albedo of eight lanes are those of one";
     let claims = subject.claims();
@@ -307,7 +308,7 @@ pub fn lobes_and_albedo_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
                         f64::from(albedo[lobe][c].as_array()[lane]),
                         f64::from(one_albedo[lobe][c]),
                     );
-                    // A lobe that lies off the sphere returns next to nothing, with the digits of its tail.
+                    // A lobe that lies off the sphere returns next to nothing, with the accuracy of its tail.
                     let floor = 1e-4 * f64::from(one_color[c]).max(1e-20);
                     if m.tolerances[lane] {
                         worst.see(relative(got, want, floor), || {

@@ -33,7 +33,7 @@
 //! | test | property |
 //! |---|---|
 //! | `results_are_finite` | every finite input gives finite results that are not negative |
-//! | `any_rounding_is_finite` | so they are in every rounding mode, with denormals and without |
+//! | `any_rounding_is_finite` | results are finite and not negative in every rounding mode, with denormals and without |
 //! | `everyday_input_raises_no_exception` | unit directions raise neither invalid nor division by zero nor overflow in eight lanes and slices |
 //! | `inputs_that_are_no_numbers_are_black` | NaN and infinite directions and numbers give 0, and discarded samples |
 //! | `density_integrates_to_one` | each lobe's density, and that of all, integrates to the share of samples kept |
@@ -43,9 +43,9 @@
 //! | `lanes_equal_scalar` | eight directions, hits and materials in lanes give the results of one lane |
 //! | `lanes_permute` | permuted lanes permute the results |
 //! | `levels_agree` | levels that fuse alike, packed and shared materials, give the same bits |
-//! | `lobes_and_albedo_equal_scalar` | the same of lobes and albedo; `h` matters only where it is claimed to |
+//! | `lobes_and_albedo_equal_scalar` | lobes and albedo in lanes are those of one lane; `h` matters only if the model claims to read it |
 //! | `slices_equal_packets` | slices of every length and alignment give the bits of packets |
-//! | `hits_equal_packets` | slices of hits give them too: evaluated, sampled or both at once, on one material and on tables, with columns left out |
+//! | `hits_equal_packets` | slices of hits give the bits of packets: evaluated, sampled or both at once, on one material and on tables, with columns left out |
 //! | `resampling_is_unbiased` | resampled light against plain estimates, under five lights, partly hidden |
 //! | `lobes_sum_to_value` | values and densities of lobes alone and together |
 //! | `masks_select_lobes` | masked lobes neither scatter nor are sampled |
@@ -56,18 +56,16 @@
 //! | `agrees_with_reference` | agreement with the reference in double precision, if there is one |
 //! | `lanes_are_inlined` | no level is much slower than portable lanes: all is inlined |
 //!
-//! All run on every level that the CPU has. Each property is also a function that returns an
-//! [`Outcome`]; `cargo test -- --nocapture` prints the largest error of each beside the claim that
-//! states its tolerance, and the properties of claims that the subject does not make.
+//! All tests run on every level that the CPU has. Each property is also a function that returns an [`Outcome`].
+//! `cargo test -- --nocapture` prints the largest error of each property beside the claim that states its tolerance, and the properties
+//! of claims that the subject does not make.
 //!
 //! # Failures
 //!
-//! Properties that are not statistical draw packets of eight materials, hits, directions and
-//! numbers from strategies of [`proptest`]. Properties without a tolerance draw the ends of ranges, grazing
-//! hits and the axes more often than chance, and half of their materials from
-//! [`Subject::any_material`], where the subject has it. A failure reports the worst case, and its
-//! [`case`](Failure::case) is the smallest case that fails, as a block of code. Pasted into a test,
-//! it fails again:
+//! Properties that are not statistical draw packets of eight materials, hits, directions and numbers from strategies of [`proptest`].
+//! Properties without a tolerance draw the ends of ranges, grazing hits and the axes more often than chance, and half of their materials
+//! from [`Subject::any_material`], if the subject has it. A failure reports the worst case, and its [`case`](Failure::case) is the
+//! smallest case that fails, as a block of code. Pasted into a test, the block fails again:
 //!
 //! ```
 //! # use hairis::{Gaussian, HairParams, Published};
@@ -99,17 +97,16 @@
 //! assert!(outcome.is_ok());
 //! ```
 //!
-//! The tests of [`conformance!`] also keep the seed of the case, in the file
-//! `proptest-regressions/conformance.txt` of the package under test, and run it before all others.
-//! Add that file to the repository.
+//! The tests of [`conformance!`] also keep the seed of the case in the file `proptest-regressions/conformance.txt` of the package under
+//! test, and run this case before all others. Add that file to the repository.
 //!
-//! Cases are the same in every run. The environment variable `HAIRIS_SEED`, a whole number, draws
-//! others; `HAIRIS_CASES=10` draws ten times as many.
+//! Cases are the same in every run. The environment variable `HAIRIS_SEED`, a whole number, draws other cases, and `HAIRIS_CASES=10`
+//! draws ten times as many.
 //!
 //! # Limits
 //!
-//! A density with a peak narrower than a degree where no sample falls may be missed by quadrature, unless
-//! [`Subject::edges`] names it. Relative accuracy within 1e-3 rad of the axis is left to the model's own tests.
+//! Quadrature may miss a peak of the density that is narrower than a degree if no sample falls there, unless [`Subject::edges`] names the
+//! peak. Relative accuracy within 1e-3 rad of the axis is left to the model's own tests.
 
 pub mod bounds;
 mod cases;
@@ -156,8 +153,8 @@ pub use subject::{
 
 /// Declares a module with a `#[test]` for each property of a [`Subject`].
 ///
-/// The subject is an expression without surroundings: a unit struct, or a constant. `but hits` after it leaves out slices of
-/// hits and resampling, which take the longest to compile: for models that differ by a constant from one that is tested whole.
+/// The subject is an expression that captures no variables: a unit struct, or a constant. `but hits` after the subject leaves out slices
+/// of hits and resampling, which take the longest to compile. Use it for models that differ by a constant from a fully tested model.
 #[macro_export]
 macro_rules! conformance {
     ($name:ident, $subject:expr) => {

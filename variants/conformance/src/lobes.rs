@@ -1,4 +1,4 @@
-//! Lobes sum to the value, and masks select them.
+//! Properties of lobes: they sum to the value, and masks select them.
 
 use crate::cases::Property;
 use crate::cases::inputs::Inputs;
@@ -9,15 +9,15 @@ use crate::probe::{masks, packet, triples};
 use hairis::simd::Level;
 use hairis::{Eval, Lobe, LobeMask};
 
-/// Packets of eight hits, for sums and for masks.
+/// Number of packets of eight hits, for sums and for masks.
 const CASES: [usize; 2] = [100, 300];
 
-/// The lobes' values times their colours sum to S; the density of each lobe alone is that of the shading point with only
-/// this lobe; the density of all is between the least and the largest of them.
+/// Checks that the lobes' values times their colours sum to S, and that the density of each lobe alone is that of the shading point with
+/// only this lobe. The density of all lobes is at most the largest of these densities.
 ///
 /// # Errors
 ///
-/// At the first direction where they do not.
+/// Returns a failure if a sum or a density differs at a direction.
 pub fn lobes_sum_to_value(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "lobes sum to the value";
     let claims = subject.claims();
@@ -84,12 +84,12 @@ pub fn lobes_sum_to_value(subject: &dyn ErasedSubject) -> Outcome {
     })
 }
 
-/// With some lobes masked the value is the sum of the others; masked lobes are never drawn; masks of masks are their
-/// common lobes; without any lobe there is neither value, density nor sample. One lane and eight.
+/// Checks that masks select lobes, on one lane and on eight. With some lobes masked, the value is the sum of the others, and masked lobes
+/// are never drawn. A mask of a mask leaves the common lobes. Without any lobe there is neither value, density nor sample.
 ///
 /// # Errors
 ///
-/// At the first mask that leaks.
+/// Returns a failure if a mask leaks.
 pub fn masks_select_lobes(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "masks select lobes";
     let claims = subject.claims();
@@ -133,9 +133,9 @@ pub fn masks_select_lobes(subject: &dyn ErasedSubject) -> Outcome {
                 for c in 0..3 {
                     let kept = single.iter().filter(|(lobe, _)| mask.contains(*lobe));
                     let sum: f64 = kept.map(|(_, alone)| f64::from(alone.value[c])).sum();
-                    // Values are finite: no sum is above the largest float.
+                    // Values are finite, so that no sum is above the largest float.
                     let sum = sum.min(f64::from(f32::MAX));
-                    // Eight lanes may fuse: they are held to one lane elsewhere.
+                    // Eight lanes may fuse: other properties compare them with one lane.
                     let error = relative(f64::from(got.value[c]), sum, 1e-20);
                     // Lobes that vanish alone may sum to a denormal.
                     let leak = sum == 0.0 && got.value[c] >= f32::MIN_POSITIVE;

@@ -1,8 +1,8 @@
-//! Rectangles of inclination and azimuth that a density is integrated over.
+//! Rectangles of inclination and azimuth over which a density is integrated.
 //!
-//! A narrow lobe is found where it is, through the quantiles of a few samples, and not by luck: without them quadrature
-//! on a sphere misses lobes below a degree. From there the mesh widens by a constant factor, so that tails are resolved,
-//! too. Only where the edges lie depends on the samples; what they enclose is integrated from the density alone.
+//! A narrow lobe is located by the quantiles of a few samples and not by chance, because quadrature on a sphere would miss lobes below a
+//! degree. From there the mesh widens by a constant factor, so that tails are resolved too. The samples determine only where the edges
+//! lie: the rectangles between them are integrated from the density alone.
 
 use crate::erased::{COLUMNS, ErasedBsdf, ErasedSubject, NamedMaterial};
 use crate::probe::{angles, columns, sides, sobol};
@@ -11,25 +11,25 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::simd::Level;
 use hairis::{Hit, LobeMask};
 
-/// Samples per lobe that edges are taken from.
+/// Number of samples per lobe from which edges are taken.
 const SAMPLES: u32 = 4096;
-/// Neighbouring intervals differ in width by at most this factor.
+/// Largest ratio of the widths of neighbouring intervals.
 const GRADE: f64 = 2.5;
-/// Intervals are at most this share of the domain.
+/// Largest width of an interval, as a share of the domain.
 const WIDEST: f64 = 1.0 / 8.0;
-/// Edges closer than this are one, rad.
+/// Least distance of two edges, in rad: closer edges count as one.
 const CLOSEST: f64 = 1e-6;
 
 /// Edges of the rectangles, ascending, from end to end of the domain.
 pub(crate) struct Mesh {
     pub(crate) theta: Vec<f64>,
     pub(crate) phi: Vec<f64>,
-    /// All edges but the ends.
+    /// All edges except the ends.
     inner: [AngleEdges; 2],
 }
 
 impl Mesh {
-    /// A mesh for the density of a shading point: of all its lobes, or of those in `mask`.
+    /// Makes a mesh for the density of a shading point with these lobes.
     pub(crate) fn new(
         subject: &dyn ErasedSubject,
         material: NamedMaterial<'_>,
@@ -50,25 +50,25 @@ impl Mesh {
         Self { theta, phi, inner }
     }
 
-    /// The rectangle that contains a direction. One along the axis counts in the first column.
+    /// Returns the rectangle that contains a direction. A direction along the axis counts in the first column.
     pub(crate) fn find(&self, direction: [f64; 3]) -> [usize; 2] {
         let [theta, phi] = sides(direction);
         [self.inner[0].below(theta), self.inner[1].below(phi)]
     }
 
-    /// Number of intervals of each angle.
+    /// Returns the number of intervals of each angle.
     pub(crate) fn size(&self) -> [usize; 2] {
         [self.theta.len() - 1, self.phi.len() - 1]
     }
 }
 
-/// Many samples of one shading point, by column.
+/// Samples of one shading point, by column.
 pub(crate) struct Samples {
     columns: [Vec<f32>; COLUMNS],
 }
 
 impl Samples {
-    /// The samples that these numbers give.
+    /// Draws the samples that these numbers give.
     pub(crate) fn draw(bsdf: &dyn ErasedBsdf, xi: [Vec<f32>; 3]) -> Self {
         let mut columns: [Vec<f32>; COLUMNS] = core::array::from_fn(|_| vec![0.0; xi[0].len()]);
         let inputs = xi.each_ref().map(|column| &column[..]);
@@ -82,13 +82,13 @@ impl Samples {
         Self { columns }
     }
 
-    /// Share of the samples that were not discarded.
+    /// Returns the share of the samples that were not discarded.
     pub(crate) fn kept(&self) -> f64 {
         let [.., slot] = &self.columns;
         slot.iter().filter(|slot| **slot >= 0.0).count() as f64 / slot.len() as f64
     }
 
-    /// Directions of the samples that were not discarded.
+    /// Returns the directions of the samples that were not discarded.
     pub(crate) fn live(&self) -> impl Iterator<Item = [f64; 3]> {
         let [u, v, w, .., slot] = &self.columns;
         let live = (0..slot.len()).filter(|n| slot[*n] >= 0.0);
@@ -96,7 +96,7 @@ impl Samples {
     }
 }
 
-/// Every twelfth of a distribution, and its tails.
+/// Returns every twelfth of a distribution, and its tails.
 fn quantiles(mut sorted: Vec<f64>) -> Vec<f64> {
     sorted.retain(|x| x.is_finite());
     sorted.sort_by(f64::total_cmp);
@@ -115,7 +115,7 @@ fn quantiles(mut sorted: Vec<f64>) -> Vec<f64> {
         .collect()
 }
 
-/// Sorts edges, adds the ends of the domain, and halves what is too wide, by itself or beside its neighbours.
+/// Sorts edges, adds the ends of the domain, and halves intervals that are too wide, by themselves or beside their neighbours.
 fn graded(mut edges: Vec<f64>, end: f64) -> Vec<f64> {
     edges.retain(|x| x.abs() < end - CLOSEST);
     edges.extend([-end, end]);

@@ -1,16 +1,16 @@
-//! Effect of rounded inputs on results: the difference allowed between two evaluations of one formula.
+//! Effect of rounded inputs on results, which is the difference allowed between two evaluations of one formula.
 
 use crate::erased::{Direction, ErasedBsdf, NamedMaterial};
 use crate::probe::{cos_theta, distance, narrow, rounded};
 use hairis::{Eval, Hit, Sample};
 
-/// A rounding of an angle, or of a uniform number, as arithmetic in single precision adds up to.
+/// Rounding of an angle, or of a uniform number, as it accumulates in single-precision arithmetic.
 const ROUNDING: f64 = 4e-7;
 
-/// Values and densities below this are compared absolutely.
+/// Values and densities below this floor are compared absolutely.
 const FLOOR: f64 = 1e-20;
 
-/// A shading point, and those of the hits that its hit may be taken for once it is rounded.
+/// Shading point, with the hits that rounding may turn its hit into.
 pub(crate) struct Nearby<'a> {
     material: NamedMaterial<'a>,
     hit: Hit,
@@ -32,7 +32,7 @@ impl<'a> Nearby<'a> {
         &*self.bsdf
     }
 
-    /// The shading points of rounded hits.
+    /// Returns the shading points of rounded hits.
     fn bsdfs(&self) -> impl Iterator<Item = Box<dyn ErasedBsdf>> {
         let Hit { wo, h } = self.hit;
         let moved = rounded(wo.into(), ROUNDING).map(|wo| Hit { wo: wo.into(), h });
@@ -48,7 +48,7 @@ impl<'a> Nearby<'a> {
             .map(|hit| self.material.prepare(hit))
     }
 
-    /// The largest change of value and density as `wi` and the hit are rounded.
+    /// Returns the largest change of value and density as `wi` and the hit are rounded.
     fn spread(&self, wi: Direction) -> [f64; 4] {
         let numbers = |e: Eval| [e.value[0], e.value[1], e.value[2], e.pdf].map(f64::from);
         let centre = numbers(self.bsdf.eval_pdf(wi));
@@ -65,7 +65,7 @@ impl<'a> Nearby<'a> {
         spread
     }
 
-    /// The largest relative error of value and density, less what rounding the directions changes.
+    /// Returns the largest relative error of value and density, less the change that rounding the directions causes.
     pub(crate) fn error(&self, got: Eval, want: Eval, wi: Direction) -> f64 {
         let numbers = |e: Eval| [e.value[0], e.value[1], e.value[2], e.pdf].map(f64::from);
         let (got, want) = (numbers(got), numbers(want));
@@ -76,7 +76,7 @@ impl<'a> Nearby<'a> {
         let beyond = |((got, want), by): ((f64, f64), f64)| {
             ((got - want).abs() - by).max(0.0) / want.abs().max(FLOOR)
         };
-        // A maximum ignores NaN, which is never right.
+        // A maximum ignores NaN, which is always an error.
         if got.iter().any(|x| x.is_nan()) {
             f64::NAN
         } else {
@@ -85,7 +85,7 @@ impl<'a> Nearby<'a> {
     }
 }
 
-/// Whether a sample is that of one lane, or could be with numbers and a hit that are rounded.
+/// Returns true if a sample is that of one lane, or could be with rounded numbers and a rounded hit.
 pub(crate) fn sample_is_near(
     got: Option<Sample>,
     want: Option<Sample>,
@@ -96,7 +96,7 @@ pub(crate) fn sample_is_near(
     let near = |want: Option<Sample>, by: f64| match (got, want) {
         (None, None) => true,
         (Some(a), Some(b)) => a.lobe == b.lobe && distance(a.wi, b.wi) <= by,
-        // Next to the axis either may be discarded.
+        // Next to the axis, either sample may be discarded.
         (Some(s), None) | (None, Some(s)) => cos_theta(s.wi) < 1e-4,
     };
     if near(want, direction) {
@@ -111,7 +111,7 @@ pub(crate) fn sample_is_near(
         }
     }
     moved.extend(nearby.bsdfs().map(|bsdf| bsdf.sample(xi)));
-    // As far as rounding moves the sample of its lobe.
+    // Largest distance by which rounding moves the sample of a lobe.
     let reach = moved.iter().flatten().filter_map(|a| {
         let of_lobe = |b: &Sample| b.lobe == a.lobe;
         want.filter(of_lobe)

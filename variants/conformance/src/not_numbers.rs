@@ -1,4 +1,4 @@
-//! NaN and infinite inputs give nothing: no value, no density, and samples that are discarded.
+//! Property that NaN and infinite inputs give no value and no density, and samples that are discarded.
 
 use crate::cases::Property;
 use crate::cases::inputs::Inputs;
@@ -10,17 +10,17 @@ use hairis::{Eval, Hit, Sample8};
 
 const NAME: &str = "inputs that are no numbers are black";
 
-/// Packets of eight materials.
+/// Number of packets of eight materials.
 const CASES: usize = 1500;
 
-/// Rows of a slice: whole packets of every level, and some more.
+/// Rows of a slice: whole packets of every level, and a few more.
 const ROWS: usize = 71;
 
 fn black(e: Eval) -> bool {
     e.value == [0.0; 3] && e.pdf == 0.0
 }
 
-/// Whether every lane is discarded, and has nothing.
+/// Returns true if every lane is discarded, and all of its numbers are 0.
 fn discarded(s: &Sample8) -> bool {
     let numbers = [&s.pdf].into_iter().chain(&s.value).chain(&s.weight);
     numbers.into_iter().all(|x| x.to_array() == [0.0; 8])
@@ -121,14 +121,14 @@ fn at_each(
         .map(|s| format!("{s:?}, eight hits on {level}"))
 }
 
-/// A `wo` of which a component is NaN or infinite sees nothing, such a `wi` receives nothing, and samples of numbers of which
-/// one is NaN are discarded: on one lane, on eight, in slices, at one hit and at eight, on every level.
+/// Checks that a `wo` or a `wi` with a component that is NaN or infinite evaluates to zero, and that samples are discarded for such a
+/// `wo` or if one of the numbers is NaN. Calls run on one lane, on eight and in slices, at one hit and at eight, on every level.
 ///
 /// # Errors
 ///
-/// At the first input where something is not 0, or a sample is kept.
+/// Returns a failure if a result is not 0, or if a sample is kept.
 pub fn inputs_that_are_no_numbers_are_black(subject: &dyn ErasedSubject) -> Outcome {
-    // Sound inputs beside those that are not.
+    // Finite inputs that are combined with the non-finite ones.
     let sound: [Hit; 8] = core::array::from_fn(|lane| hits()[lane % hits().len()]);
     let (wi, xi) = (
         sound.map(|hit| hit.wo.into()),

@@ -1,4 +1,4 @@
-//! Numbers, directions and hits to test at, and lanes out of them.
+//! Numbers, directions and hits at which models are tested, and their conversion to lanes.
 
 use crate::erased::Direction;
 use core::f64::consts::PI;
@@ -6,10 +6,10 @@ use hairis::simd::f32x8;
 use hairis::{Hit, Hit8, Lobe, LobeMask, Vec3x8};
 use std::sync::OnceLock;
 
-/// The largest uniform number.
+/// Largest uniform number below 1.
 pub(crate) const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 
-/// The nearest single-precision number.
+/// Rounds a number to the nearest single-precision number.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "rounding to a float is the purpose"
@@ -19,17 +19,18 @@ pub fn narrow(x: f64) -> f32 {
     x as f32
 }
 
-/// Uniform numbers: splitmix64, from a seed that is the test's own.
+/// Generator of uniform numbers (splitmix64), from a seed that each test chooses.
 ///
-/// The environment variable `HAIRIS_SEED`, a whole number, gives every test other numbers; without it they are always the same.
+/// The environment variable `HAIRIS_SEED`, a whole number, gives every test other numbers. Without it, the numbers are the same in every
+/// run.
 #[derive(Clone, Debug)]
 pub struct Draws(pub u64);
 
-/// The seed of this run: 0, or that of the environment.
+/// Returns the seed of this run: the one in the environment, or 0.
 ///
 /// # Panics
 ///
-/// If it is no whole number of 64 bits.
+/// Panics if `HAIRIS_SEED` is not a whole number of 64 bits.
 pub(crate) fn run_seed() -> u64 {
     static SEED: OnceLock<u64> = OnceLock::new();
     *SEED.get_or_init(|| match std::env::var("HAIRIS_SEED") {
@@ -41,12 +42,12 @@ pub(crate) fn run_seed() -> u64 {
 }
 
 impl Draws {
-    /// 64 random bits.
+    /// Draws 64 random bits, which depend on `HAIRIS_SEED`.
     pub fn bits(&mut self) -> u64 {
         self.mixed(run_seed())
     }
 
-    /// 64 random bits, the same in every run.
+    /// Draws 64 random bits that are the same in every run.
     pub(crate) fn unseeded(&mut self) -> u64 {
         self.mixed(0)
     }
@@ -59,17 +60,17 @@ impl Draws {
         z ^ (z >> 31)
     }
 
-    /// A multiple of `2^-24` in `[0, 1)`.
+    /// Draws a multiple of `2^-24` in `[0, 1)`.
     pub fn xi(&mut self) -> f32 {
         narrow((self.bits() >> 40) as f64 / 16_777_216.0)
     }
 
-    /// Three of [`xi`](Self::xi).
+    /// Draws three uniform numbers, each as [`xi`](Self::xi) draws it.
     pub fn xi3(&mut self) -> [f32; 3] {
         [self.xi(), self.xi(), self.xi()]
     }
 
-    /// Uniform in `[lo, hi)`.
+    /// Draws a number that is uniform in `[lo, hi)`.
     pub fn between(&mut self, lo: f64, hi: f64) -> f64 {
         lo + (hi - lo) * (self.bits() >> 11) as f64 / 9_007_199_254_740_992.0
     }
@@ -80,12 +81,12 @@ impl Draws {
         &from[at]
     }
 
-    /// Any direction, uniform in its angles: as many next to the axis as elsewhere.
+    /// Draws any direction, uniform in its angles: as many next to the axis as elsewhere.
     pub(crate) fn direction(&mut self) -> Direction {
         direction(self.between(-0.5 * PI, 0.5 * PI), self.between(-PI, PI))
     }
 
-    /// A hit from any direction.
+    /// Draws a hit seen from any direction, with any offset.
     pub(crate) fn hit(&mut self) -> Hit {
         Hit {
             wo: self.direction().into(),
@@ -94,48 +95,48 @@ impl Draws {
     }
 }
 
-/// The direction at these angles, rounded.
+/// Returns the unit direction at these angles in rad, rounded to single precision.
 #[must_use]
 pub fn direction(theta: f64, phi: f64) -> Direction {
     let ((sin, cos), (sin_phi, cos_phi)) = (theta.sin_cos(), phi.sin_cos());
     Direction::new(narrow(sin), narrow(cos * cos_phi), narrow(cos * sin_phi))
 }
 
-/// The vector in double precision.
+/// Converts a vector to double precision.
 #[must_use]
 pub fn double(v: Direction) -> [f64; 3] {
     [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
 }
 
-/// Cosine of the inclination of a unit vector.
+/// Returns the cosine of the inclination of a unit vector.
 pub(crate) fn cos_theta(v: Direction) -> f64 {
     (f64::from(v.y).powi(2) + f64::from(v.z).powi(2)).sqrt()
 }
 
-/// Sine and cosine of the inclination and of the azimuth, each pair times a length.
+/// Returns sine and cosine of the inclination and of the azimuth, each pair times a length.
 pub(crate) fn sides([u, v, w]: [f64; 3]) -> [[f64; 2]; 2] {
     [[u, (v * v + w * w).sqrt()], [w, v]]
 }
 
-/// Inclination and azimuth.
+/// Returns the inclination and the azimuth of a direction.
 pub(crate) fn angles(direction: [f64; 3]) -> [f64; 2] {
     sides(direction).map(|[sin, cos]| sin.atan2(cos))
 }
 
-/// Distance between two vectors.
+/// Returns the distance between two vectors.
 pub(crate) fn distance(a: Direction, b: Direction) -> f64 {
     let ([a0, a1, a2], [b0, b1, b2]) = (double(a), double(b));
     ((a0 - b0).powi(2) + (a1 - b1).powi(2) + (a2 - b2).powi(2)).sqrt()
 }
 
-/// Directions that a direction may be taken for once its components and its inclination are rounded: moved by `by` along each
-/// axis, across the fibre by as much less as the direction is shorter there, and turned by `by` towards the axis and away from it.
+/// Returns the directions that rounding the components and the inclination may turn a direction into. They are moved by `by` along the
+/// fibre, moved across the fibre by as much less as the direction is shorter there, and turned by `by` towards the axis and away from it.
 pub(crate) fn rounded(v: Direction, by: f64) -> [Direction; 8] {
     let cos = cos_theta(v);
     let (along, across) = (narrow(by), narrow(by * cos));
     let moved = |x: f32, y: f32, z: f32| Direction::new(v.x + x, v.y + y, v.z + z);
     let turned = |by: f64| {
-        // On the axis every way across is as good.
+        // On the axis, every direction across is equally good.
         let [y, z] = if cos > 0.0 {
             [v.y, v.z].map(|x| f64::from(x) / cos)
         } else {
@@ -156,7 +157,7 @@ pub(crate) fn rounded(v: Direction, by: f64) -> [Direction; 8] {
     ]
 }
 
-/// Hits for the properties that take an integral: normal, tilted both ways, and grazing at more than 80 degrees.
+/// Returns the hits for properties that take an integral: normal, tilted both ways, and grazing at more than 80 degrees.
 pub(crate) fn hits() -> [Hit; 7] {
     const THETA_O: [f64; 7] = [0.0, 25.0, -50.0, 70.0, -82.0, 87.0, 89.9];
     const H: [f32; 7] = [0.0, 0.35, -0.8, 0.99, -0.6, 0.999, -0.1];
@@ -166,7 +167,7 @@ pub(crate) fn hits() -> [Hit; 7] {
     })
 }
 
-/// Awkward hits, followed by `count` from anywhere.
+/// Returns awkward hits, followed by `count` random ones.
 pub(crate) fn hits_and(count: usize, draws: &mut Draws) -> Vec<Hit> {
     hits()
         .into_iter()
@@ -174,7 +175,7 @@ pub(crate) fn hits_and(count: usize, draws: &mut Draws) -> Vec<Hit> {
         .collect()
 }
 
-/// Every subset of the slots, the empty one first and all of them last.
+/// Returns every subset of the slots, the empty one first and the full one last.
 pub(crate) fn masks() -> Vec<LobeMask> {
     let subset = |bits: usize| {
         let lobes: Vec<Lobe> = Lobe::ALL
@@ -186,12 +187,12 @@ pub(crate) fn masks() -> Vec<LobeMask> {
     (0..16).map(subset).collect()
 }
 
-/// Eight vectors as lanes.
+/// Packs eight vectors into lanes.
 pub(crate) fn packet(v: &[Direction; 8]) -> Vec3x8 {
     (*v).into()
 }
 
-/// Eight hits as lanes.
+/// Packs eight hits into lanes.
 pub(crate) fn hits8(hits: &[Hit; 8]) -> Hit8 {
     Hit {
         wo: packet(&hits.map(|hit| hit.wo.into())),
@@ -199,13 +200,13 @@ pub(crate) fn hits8(hits: &[Hit; 8]) -> Hit8 {
     }
 }
 
-/// Eight triples of numbers as lanes.
+/// Packs eight triples of numbers into lanes.
 #[must_use]
 pub fn triples(xi: &[[f32; 3]; 8]) -> [f32x8; 3] {
     core::array::from_fn(|axis| f32x8::new(xi.map(|xi| xi[axis])))
 }
 
-/// Sobol's direction numbers for the second and the third coordinate: polynomials `x + 1` and `x^2 + x + 1`.
+/// Direction numbers of Sobol's second and third coordinate, for the polynomials `x + 1` and `x^2 + x + 1`.
 const DIRECTIONS: [[u32; 32]; 2] = {
     let mut v = [[0; 32]; 2];
     (v[0][0], v[1][0], v[1][1]) = (1 << 31, 1 << 31, 3 << 30);
@@ -220,8 +221,8 @@ const DIRECTIONS: [[u32; 32]; 2] = {
     v
 };
 
-/// Point `n` of Sobol's three-dimensional sequence: of `2^m` points each of `2^m` equal intervals holds one, along every
-/// axis, and so does each of as many equal rectangles of any two but for a few.
+/// Returns point `n` of Sobol's three-dimensional sequence. Of `2^m` points, each of `2^m` equal intervals along every axis holds one,
+/// and so do all but a few of as many equal rectangles in any two axes.
 pub(crate) fn sobol(n: u32) -> [f32; 3] {
     let sum = |directions: &[u32; 32]| {
         let bits = directions
@@ -234,7 +235,7 @@ pub(crate) fn sobol(n: u32) -> [f32; 3] {
         .map(|x| (x >> 8) as f32 / 16_777_216.0)
 }
 
-/// `count` triples by component.
+/// Returns `count` triples by component.
 pub(crate) fn columns(count: u32, mut xi: impl FnMut(u32) -> [f32; 3]) -> [Vec<f32>; 3] {
     let mut columns = [const { Vec::new() }; 3];
     for n in 0..count {

@@ -1,7 +1,7 @@
-//! Tests of the published model's family: any bell, the published sampler and the matched ones.
+//! Tests of the published model's family, with any bell, the published sampler and the matched ones.
 //!
-//! They hold the kernels against the paper's formulas in double precision, with a row of bounds per model. Both the kernels
-//! and the variants run them; other models have no use for them.
+//! They compare the kernels with the paper's formulas in double precision, with a row of bounds per model. Both the kernels and the
+//! variants run them. Other models have no use for them.
 
 pub mod albedo;
 pub mod density;
@@ -32,36 +32,36 @@ use hairis::{HairParams, Matched, Published};
 use hairis_reference::{HairFormulas, Shape};
 use handles::{AnyModel, Sampler};
 
-/// A model of the family.
+/// Model of the family, with its bell, its sampler and its bounds.
 pub trait FamilyModel: Sync {
-    /// The model.
+    /// Model under test.
     type Model: Model<Params = HairParams> + 'static;
-    /// Its bell.
+    /// Bell of the model.
     type Bell: MatchedBell + 'static;
 
-    /// The bell.
+    /// Returns the bell of the model.
     fn bell() -> Self::Bell;
 
-    /// Every form of the model, with its factor on the widths: the first is that of [`bell`](Self::bell).
+    /// Returns every form of the model, with its factor on the widths. The first form is that of [`bell`](Self::bell).
     fn forms() -> Vec<(Self::Model, f32)>;
 
     /// Bell of the reference that this kernel's bell is compared with.
     const SHAPE: Shape;
-    /// Number of bands of the matched sampler; `None` for the published one.
+    /// Number of bands of the matched sampler, or `None` for the published one.
     const BANDS: Option<usize> = None;
-    /// Whether the matched sampler chooses lobes by channel.
+    /// True if the matched sampler chooses lobes by channel.
     const BY_CHANNEL: bool = false;
-    /// The bell over the Cauchy value at its worst.
+    /// Largest ratio of the bell to the Cauchy value.
     const OVER_CAUCHY: f64;
-    /// Densities below this are compared absolutely.
+    /// Densities below this floor are compared absolutely.
     const PDF_FLOOR: f64;
-    /// Bounds.
+    /// Bounds of the errors of the model.
     const ROWS: Rows;
-    /// The source whose documentation has the table of the matched samplers, for tests of those.
+    /// Source whose documentation has the table of the matched samplers, for tests of these samplers.
     const DOCS: &'static str = "";
 }
 
-/// The formulas that a model is held against.
+/// Returns the formulas in double precision that a model is compared with.
 #[must_use]
 pub const fn formulas<S: FamilyModel>() -> HairFormulas {
     HairFormulas {
@@ -71,10 +71,10 @@ pub const fn formulas<S: FamilyModel>() -> HairFormulas {
     }
 }
 
-/// A [`FamilyModel`] model without its types, as the tests take it.
+/// [`FamilyModel`] without its types, in the form that the tests take.
 pub struct Tested {
     forms: Vec<(Box<dyn AnyModel>, f32)>,
-    /// With the published sampler, and with the matched ones of 5, 9 and 25 bands.
+    /// Handles with the published sampler, and with the matched samplers of 5, 9 and 25 bands.
     samplers: [(Option<usize>, Box<dyn Sampler>); 4],
     formulas: HairFormulas,
     over_cauchy: f64,
@@ -90,7 +90,7 @@ impl fmt::Debug for Tested {
 }
 
 impl Tested {
-    /// The model `S`.
+    /// Makes the handles and the bounds of the model `S`.
     pub fn new<S: FamilyModel>() -> Self {
         let forms = S::forms()
             .into_iter()
@@ -112,19 +112,19 @@ impl Tested {
         }
     }
 
-    /// Every form of the model, with its factor on the widths.
+    /// Returns every form of the model, with its factor on the widths.
     fn forms(&self) -> impl Iterator<Item = (&dyn AnyModel, f32)> {
         self.forms.iter().map(|(model, factor)| (&**model, *factor))
     }
 
-    /// The first form.
+    /// Returns the first form of the model, with its factor on the widths.
     fn first(&self) -> (&dyn AnyModel, f32) {
         let (model, factor) = &self.forms[0];
         (&**model, *factor)
     }
 
-    /// The figures that the documentation states for so many bands, each with the unit of its last
-    /// digit: V, its mean gain and its least one, and the largest weight.
+    /// Returns the figures that the documentation states for a number of bands, each with the unit of its last digit: V, its mean gain
+    /// and its least one, and the largest weight.
     fn documented(&self, bands: usize) -> [[f64; 2]; 4] {
         let name = format!("`Matched<_, {bands}>`");
         let row = self
@@ -146,20 +146,20 @@ impl Tested {
         numbers.try_into().expect("four numbers")
     }
 
-    /// The model of the first form.
+    /// Returns the model of the first form.
     fn model(&self) -> &dyn AnyModel {
         self.first().0
     }
 
-    /// The model with the matched sampler of so many bands, or with the published one.
+    /// Returns the model with the matched sampler of this number of bands, or with the published sampler.
     fn sampler(&self, bands: Option<usize>) -> &dyn Sampler {
         let found = self.samplers.iter().find(|(with, _)| *with == bands);
         &*found.expect("one of the samplers").1
     }
 }
 
-/// Declares a module with a `#[test]` for each test of a [`FamilyModel`] model: `common` ones, or those of the `published` or a
-/// `matched` sampler as well.
+/// Declares a module with a `#[test]` for each test of a [`FamilyModel`]: the `common` tests, or also those of the `published` or a
+/// `matched` sampler.
 #[macro_export]
 #[doc(hidden)]
 macro_rules! published {
@@ -218,7 +218,7 @@ macro_rules! published {
     (@@$name:ident, $model:ty, $($module:ident { $($test:ident)* })*) => {
         #[cfg(test)]
         mod $name {
-            /// The model under test.
+            /// Model under test.
             type Model = $model;
             $(
                 mod $module {

@@ -1,4 +1,4 @@
-//! Resampled estimates of direct light have the mean of plain ones.
+//! Property that resampled estimates of direct light have the mean of plain ones.
 
 use crate::environment::{DOWN, with_mode};
 use crate::erased::{ErasedBsdf, ErasedBsdf8, ErasedSubject, Which};
@@ -11,12 +11,12 @@ use hairis::resample::{Counts, Partition, Pool, Reservoir8};
 use hairis::simd::{Level, f32x8};
 
 const NAME: &str = "resampling is unbiased";
-/// Estimates per cell: so many that estimates that are two percent off are found whatever the seed and the number of levels.
+/// Number of estimates per cell, which is large enough to detect estimates that are two percent off, for any seed and number of levels.
 const ESTIMATES: usize = 1280;
-/// Estimates with long tails lie further apart than chance would have it, as the rarest are missing from the mean and from its
-/// error: a cell that is too far is drawn anew with so many times as many, which finds a bias all the more.
+/// Factor on the number of estimates with which a cell that is too far off is drawn again. Long tails put cells further apart than chance
+/// would, because the rarest estimates are missing from the mean and from its error. More estimates make a bias more visible.
 const AGAIN: usize = 16;
-/// Standard errors that one cell in 1000 exceeds by chance.
+/// Number of standard errors that one cell in 1000 exceeds by chance.
 const ONE_IN_1000: f64 = 3.29;
 
 /// Light from a cap about a direction, and from everywhere else.
@@ -32,7 +32,7 @@ struct Light {
 }
 
 impl Light {
-    /// Constant, half a sphere, a window, a lamp, and a lamp alone.
+    /// Returns five lights: constant, half a sphere, a window, a lamp with a sky, and a lamp alone.
     fn all(draws: &mut Draws) -> [Self; 5] {
         let white = [1.0; 3];
         [
@@ -51,7 +51,7 @@ impl Light {
         })
     }
 
-    /// Radiance and density of drawing a direction.
+    /// Returns the radiance from a direction, and the density of drawing that direction.
     fn look_up(&self, wi: Vec3) -> ([f32; 3], f32) {
         let (inside, outside) = (2.0 * PI * (1.0 - self.edge), 2.0 * PI * (1.0 + self.edge));
         if wi.dot(self.axis) >= self.edge {
@@ -69,13 +69,13 @@ impl Light {
         }
     }
 
-    /// A direction drawn with that density.
+    /// Draws a direction with the density that [`look_up`](Self::look_up) returns.
     fn draw(&self, draws: &mut Draws) -> Vec3 {
         let [which, x, y] = draws.xi3();
         let cos = if which < self.share || self.edge == -1.0 {
             1.0 - x * (1.0 - self.edge)
         } else {
-            // Below the edge, which itself is of the cap.
+            // Below the edge, which itself belongs to the cap.
             (self.edge - (1.0 - x) * (1.0 + self.edge)).max(-1.0)
         };
         let (sin, (sin_phi, cos_phi)) =
@@ -85,7 +85,7 @@ impl Light {
     }
 }
 
-/// Hair in between: none of the light from every second of some cells.
+/// Returns the visibility of the light behind other hair, which blocks every second one of some cells.
 fn visible(wi: Vec3) -> f64 {
     let cells = (wi * 3.0 + Vec3::splat(10.0)).floor();
     if (cells.x + cells.y + cells.z) % 2.0 < 1.0 {
@@ -95,19 +95,19 @@ fn visible(wi: Vec3) -> f64 {
     }
 }
 
-/// Mean over the channels.
+/// Returns the mean over the channels.
 fn mean(rgb: [f32; 3]) -> f64 {
     rgb.into_iter().map(f64::from).sum::<f64>() / 3.0
 }
 
-/// One-sample estimates of what a direction brings by both techniques at once, in double precision and without a pool.
+/// One-sample estimates of the reflected light by both techniques at once, in double precision and without a pool.
 struct Plain<'a> {
     bsdf: &'a dyn ErasedBsdf,
     light: Light,
 }
 
 impl Plain<'_> {
-    /// `f V`, and the densities of the BSDF and of the light.
+    /// Returns `f V`, and the densities of the BSDF and of the light.
     fn terms(&self, wi: Vec3) -> [f64; 3] {
         let (radiance, pdf_light) = self.light.look_up(wi);
         let eval = self.bsdf.eval_pdf(wi);
@@ -132,7 +132,7 @@ impl Plain<'_> {
         from_bsdf + over(self.terms(self.light.draw(draws)))
     }
 
-    /// The light by resampling from a pool of 16.
+    /// Estimates the light by resampling from a pool of at most 16 candidates.
     fn pooled(&self, counts: Counts, partition: Partition, k: u32, draws: &mut Draws) -> f64 {
         let mut pool = Pool::<16>::new(counts, partition).expect("16 candidates at most");
         let xi: Vec<[f32; 3]> = (0..counts.bsdf).map(|_| draws.xi3()).collect();
@@ -155,7 +155,7 @@ impl Plain<'_> {
             .sum()
     }
 
-    /// The light's share by resampling, and the rest where a path's next direction meets it.
+    /// Estimates the light's share by resampling, and the rest from the light that a path's next direction meets.
     fn path(&self, partition: Partition, draws: &mut Draws) -> f64 {
         let direct = self.pooled(Counts { bsdf: 0, light: 8 }, partition, 1, draws);
         let Some(next) = self.bsdf.sample(draws.xi3()) else {
@@ -167,7 +167,7 @@ impl Plain<'_> {
     }
 }
 
-/// Estimates of eight hits with a reservoir each: the candidates in two reservoirs that are merged.
+/// Estimates the light at eight hits with a reservoir each, whose candidates are divided between two reservoirs that are merged.
 fn reservoirs(bsdf: &dyn ErasedBsdf8, light: Light, level: Level, draws: &mut Draws) -> [f64; 8] {
     let counts = Counts { bsdf: 4, light: 4 };
     let mut kept = [Reservoir8::default().with_level(level); 2];
@@ -218,7 +218,7 @@ impl Sums {
         self.squares += x * x;
     }
 
-    /// Mean and its variance.
+    /// Returns the mean and its variance.
     fn mean(&self) -> [f64; 2] {
         let mean = self.sum / self.n;
         [
@@ -228,22 +228,23 @@ impl Sums {
     }
 }
 
-/// Under five lights, partly hidden, resampled estimates have the mean of plain ones: pools with one and with several rays,
-/// both partitions with the path's next direction, and merged reservoirs of eight hits, on every level.
+/// Checks that resampled estimates have the mean of plain ones under five lights, partly hidden. The estimates come from pools with one
+/// and with several rays, from both partitions with the path's next direction, and from merged reservoirs of eight hits on every level.
 ///
 /// # Errors
 ///
-/// If more cells lie apart than chance allows, or all lie to one side on average.
+/// Returns a failure if more cells differ than chance allows, if all are off to one side on average, or if an estimate is negative or not
+/// finite.
 pub fn resampling_is_unbiased(subject: &dyn ErasedSubject) -> Outcome {
     any_rounding_is_finite(subject)?;
     check(subject, 1.0)
 }
 
-/// Checks estimates that are multiplied by `factor`.
+/// Checks estimates that are multiplied by `factor`, so that tests can introduce a bias.
 ///
 /// # Errors
 ///
-/// As there.
+/// Returns a failure if more cells differ than chance allows, or if all are off to one side on average.
 #[doc(hidden)]
 pub fn check(subject: &dyn ErasedSubject, factor: f64) -> Outcome {
     let mut draws = Draws(0x2e5a);
@@ -252,13 +253,13 @@ pub fn check(subject: &dyn ErasedSubject, factor: f64) -> Outcome {
     for index in 0..set.len() {
         let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
         for light in Light::all(&mut draws) {
-            // Errors of a cell: its resampled estimates, from their number, against plain ones.
+            // Adds the error of a cell: its resampled estimates, computed from their number, against plain ones.
             let mut cell =
                 |hit: Hit, draws: &mut Draws, resampled: &dyn Fn(usize, &mut Draws) -> Sums| {
                     let bsdf = set.prepare(index, hit);
                     let apart = |count: usize, draws: &mut Draws| {
                         let resampled = resampled(count, draws);
-                        // Samples for each cell alone, so that the cells' errors are independent.
+                        // Each cell has samples of its own, so that the cells' errors are independent.
                         let plain = Sums::of(4 * count, || {
                             Plain {
                                 bsdf: &*bsdf,
@@ -268,7 +269,7 @@ pub fn check(subject: &dyn ErasedSubject, factor: f64) -> Outcome {
                         });
                         let ([a, a_var], [b, b_var]) = (resampled.mean(), plain.mean());
                         let error = (a_var + b_var).sqrt();
-                        // Estimates without any spread, and hits that see next to nothing, are left out.
+                        // Estimates without any spread, and hits that receive next to nothing, are left out.
                         (error > 1e-5 * b.abs() && b > 0.0).then(|| (factor * a - b) / error)
                     };
                     let first = apart(ESTIMATES, draws);
@@ -308,7 +309,7 @@ pub fn check(subject: &dyn ErasedSubject, factor: f64) -> Outcome {
         errors.iter().filter(|z| z.abs() > ONE_IN_1000).count(),
     );
     let aside = errors.iter().sum::<f64>() / n.sqrt();
-    // Poisson: 1e-3 of the cells, and as many more as chance exceeds once in 1000.
+    // By Poisson's law: 1e-3 of the cells, and as many more as chance exceeds once in 1000.
     let allowed = 2.0 + 1e-3 * n + 3.1 * (1e-3 * n).sqrt();
     if apart as f64 > allowed || aside.abs() > ONE_IN_1000 {
         let message = format!(
@@ -319,7 +320,7 @@ pub fn check(subject: &dyn ErasedSubject, factor: f64) -> Outcome {
     Ok(())
 }
 
-/// Estimates are finite and not negative where the host rounds down and takes denormals for 0.
+/// Checks that estimates are finite and not negative if the host rounds down and takes denormals for 0.
 fn any_rounding_is_finite(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0xd0);
     let set = subject.set(Which::Everyday);

@@ -1,4 +1,4 @@
-//! A sample reports the value and the density of its direction.
+//! Property that a sample reports the value and the density of its direction.
 
 use crate::cases::inputs::Inputs;
 use crate::cases::{Property, Source};
@@ -10,15 +10,15 @@ use core::cell::Cell;
 use hairis::Eval;
 use hairis::simd::Level;
 
-/// Packets of eight hits.
+/// Number of packets of eight hits.
 const CASES: usize = 3000;
 
-/// A sample's value and density are those that evaluation gives at its direction, its weight is `value cos theta_i / pdf`,
-/// and its own lobe has a density there: on one lane and on every level.
+/// Checks samples on one lane and on every level: a sample's value and density are those that evaluation gives at its direction, its
+/// weight is `value cos theta_i / pdf`, and its own lobe has a density there.
 ///
 /// # Errors
 ///
-/// At the first sample that reports otherwise.
+/// Returns a failure if a sample reports other numbers, or if no sample is kept.
 pub fn samples_agree_with_eval(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "samples agree with evaluation";
     let claims = subject.claims();
@@ -54,7 +54,7 @@ pub fn samples_agree_with_eval(subject: &dyn ErasedSubject) -> Outcome {
             let Some(s) = sample else { continue };
             live.set(live.get() + 1);
             let (wi, cos) = (s.wi, cos_theta(s.wi));
-            // A tiny cosine has digits of its own.
+            // A tiny cosine is less accurate than the tolerance.
             if cos < 1e-3 {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Slices give the bits of packets, whatever their length and alignment, and nothing is written beyond them.
+//! Property that slices give the bits of packets for every length and alignment, and that nothing is written beyond them.
 
 use crate::erased::{COLUMNS, Direction, ErasedBsdf, ErasedSubject, WEIGHT_COLUMNS, Which};
 use crate::failure::{Failure, Outcome};
@@ -8,14 +8,14 @@ use hairis::columns::LengthError;
 use hairis::simd::Level;
 
 const NAME: &str = "slices give the bits of packets";
-/// Content of a slice that is not to be written.
+/// Content of a slice that must not be written.
 pub(crate) const UNTOUCHED: f32 = -77.0;
 /// Room after the slice under test.
 const MARGIN: usize = 9;
-/// Two packets of the widest level, and some.
+/// Length of the longest slices: two packets of the widest level, and a few rows more.
 const LONGEST: usize = 69;
 
-/// `N` columns of room for `len` numbers at an offset, with margins.
+/// Room for `N` columns of `len` numbers at an offset, with margins.
 pub(crate) struct Room<const N: usize> {
     columns: [Vec<f32>; N],
     offset: usize,
@@ -38,7 +38,7 @@ impl<const N: usize> Room<N> {
             .map(|column| &mut column[offset..offset + len])
     }
 
-    /// Whether the results are those wanted, and nothing is written beside them.
+    /// Checks that the results are the expected ones, and that nothing is written beside them.
     pub(crate) fn check(&self, want: &[[u32; N]], what: &str, at: &str) -> Outcome {
         for (n, column) in self.columns.iter().enumerate() {
             let margins = column[..self.offset]
@@ -68,13 +68,14 @@ impl<const N: usize> Room<N> {
     }
 }
 
-/// Slices of every length up to 69, at every offset up to 7, give the bits of packets on every level: values and densities
-/// together and apart, and samples. Nothing is written beyond them. Slices of different lengths are refused, and then
-/// nothing is written at all.
+/// Checks that slices of every length up to 69, at every offset up to 7, give the bits of packets on every level: values and densities
+/// together and separately, and samples.
+///
+/// Nothing is written beyond the slices. Slices of different lengths are rejected, and then nothing is written at all.
 ///
 /// # Errors
 ///
-/// At the first entry that differs.
+/// Returns the first entry that differs.
 pub fn slices_equal_packets(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0x511c);
     for (n, material) in subject.set(Which::WithExtremes).iter().enumerate() {
@@ -84,7 +85,7 @@ pub fn slices_equal_packets(subject: &dyn ErasedSubject) -> Outcome {
         for level in Level::available() {
             let expected = Expected::new(&*bsdf, level, &rows);
             for len in 0..=LONGEST {
-                // Every length with each material, every alignment with some.
+                // Every length occurs with each material, every alignment with some.
                 for offset in (0..8).filter(|offset| n == 0 || (len + offset + n) % 8 == 0) {
                     expected.check(
                         &*bsdf,
@@ -202,7 +203,7 @@ const SAMPLE_SLICES: [&str; 3 + COLUMNS] = [
     "pdf", "weight.r", "weight.g", "weight.b", "slot",
 ];
 
-/// A slice of another length is refused by its name, and nothing is written.
+/// Checks that a slice of another length is rejected by its name, and that nothing is written.
 fn lengths_are_checked(bsdf: &dyn ErasedBsdf) -> Outcome {
     for level in Level::available() {
         for (expected, len) in [(5, 0), (5, 4), (5, 6), (5, 40), (16, 17)] {
@@ -238,7 +239,7 @@ fn lengths_are_checked(bsdf: &dyn ErasedBsdf) -> Outcome {
                     .with_level(level)
                     .eval_array(read, out.each_mut().map(|c| &mut c[..]));
                 check(name, got, &out)?;
-                // Value and density alone each have some of the slices.
+                // An evaluation of the value or the density alone has fewer slices.
                 let mut out = room();
                 let [r, g, b, pdf] = out.each_mut().map(|c| &mut c[..]);
                 let (value, density) = (
@@ -261,7 +262,7 @@ fn lengths_are_checked(bsdf: &dyn ErasedBsdf) -> Outcome {
                     .with_level(level)
                     .sample_array(read, out.each_mut().map(|c| &mut c[..]));
                 check(name, got, &out)?;
-                // Weights alone have some of the slices.
+                // A call for weights alone has fewer slices.
                 if wrong < 3 || WEIGHT_COLUMNS.contains(&(wrong - 3)) {
                     let mut out = WEIGHT_COLUMNS.map(|n| vec![UNTOUCHED; length(n + 3, wrong)]);
                     let got = bsdf
@@ -275,7 +276,7 @@ fn lengths_are_checked(bsdf: &dyn ErasedBsdf) -> Outcome {
     Ok(())
 }
 
-/// Without a level, slices run on the one that is found.
+/// Checks that slices run on the detected level if no level is selected.
 fn found_level_is_default(bsdf: &dyn ErasedBsdf, inputs: &[[Vec<f32>; 3]; 2]) -> Outcome {
     let [wi, xi] = inputs
         .each_ref()

@@ -1,4 +1,4 @@
-//! Eight lanes are worth their instruction sets.
+//! Property that eight lanes use their instruction sets, because every function over lanes is inlined.
 
 use crate::erased::{Direction, ErasedBsdf, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome};
@@ -9,18 +9,18 @@ use std::time::Instant;
 
 const NAME: &str = "every function over lanes is inlined";
 
-/// Packets of a run, and runs, of which the fastest counts.
+/// Packets of a run, followed by the number of runs, of which the fastest counts.
 const PACKETS: usize = 64;
 const RUNS: usize = 25;
 
-/// Most times as long as portable lanes take. Inlined, wider levels take at most 1.1 times as long
-/// where a test calls a small model through objects; with a call in each operation they take 10.
+/// Largest time of a level, relative to portable lanes. Inlined, wider levels take at most 1.1 times as long if a test calls a small
+/// model through trait objects. With a call in each operation they take 10 times as long.
 const MOST: f64 = 5.0;
 
 /// Names of the calls that are timed.
 const CALLS: [&str; 2] = ["eval_pdf8", "sample8"];
 
-/// The shortest time that each call takes.
+/// Returns the shortest time that each call takes.
 fn times(
     bsdf: &dyn ErasedBsdf,
     level: Level,
@@ -44,13 +44,12 @@ fn times(
     least
 }
 
-/// Evaluation and sampling take no level of the CPU much longer than portable lanes, as they do
-/// where a function over lanes, such as `lobes`, lacks `#[inline(always)]`: each of its operations
-/// is then a call.
+/// Checks that evaluation and sampling on no level of the CPU take much longer than on portable lanes. They would if a function over
+/// lanes, such as `lobes`, lacked `#[inline(always)]`, because each of its operations would then be a call.
 ///
 /// # Errors
 ///
-/// If a call takes longer: its name and the level.
+/// Returns a failure with the name of the call and the level if a call takes longer.
 pub fn lanes_are_inlined(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0x5bee);
     let set = subject.set(Which::Everyday);

@@ -1,10 +1,10 @@
-//! Goodness of fit: chi-square with pooling, and Kolmogorov-Smirnov.
+//! Tests of goodness of fit: chi-square with pooling, and Kolmogorov-Smirnov.
 
 use statrs::function::gamma::gamma_ur;
 
-/// Probability of a chi-square value of at least `x` with `freedom` degrees.
+/// Returns the probability of a chi-square value of at least `x` with `freedom` degrees.
 pub(crate) fn chi_square_tail(x: f64, freedom: usize) -> f64 {
-    // The incomplete gamma function has no value at 0, where every statistic is as large.
+    // The incomplete gamma function is not defined at 0, where every statistic is as large.
     if x == 0.0 {
         1.0
     } else {
@@ -12,12 +12,12 @@ pub(crate) fn chi_square_tail(x: f64, freedom: usize) -> f64 {
     }
 }
 
-/// Edges between cells of an angle, which find its cell without the arc tangent: that takes longer than to draw a sample.
+/// Edges between cells of an angle. They find the cell of a direction without the arc tangent, which takes longer than drawing a sample.
 #[derive(Clone, Debug)]
 pub struct AngleEdges(Vec<f64>);
 
 impl AngleEdges {
-    /// Edges by their angles.
+    /// Makes edges from their angles.
     ///
     /// - Units: radians.
     /// - Domain: ascending, from -pi to pi.
@@ -31,7 +31,7 @@ impl AngleEdges {
         )
     }
 
-    /// Number of edges at or below the angle of a sine and a cosine, both times one length; 0 if both are 0.
+    /// Returns the number of edges at or below the angle of a sine and a cosine, both times one length; 0 if both are 0.
     #[must_use]
     pub fn below(&self, sides: [f64; 2]) -> usize {
         let order = angle_order(sides);
@@ -39,7 +39,7 @@ impl AngleEdges {
     }
 }
 
-/// Ascends with the angle of a sine and a cosine, both times one length: from -2 at -pi to 2 at pi.
+/// Returns a number that ascends with the angle of a sine and a cosine, both times one length: from -2 at -pi to 2 at pi.
 #[inline]
 fn angle_order([sin, cos]: [f64; 2]) -> f64 {
     let quarter = sin / (sin.abs() + cos.abs());
@@ -50,26 +50,26 @@ fn angle_order([sin, cos]: [f64; 2]) -> f64 {
     }
 }
 
-/// Outcome of a chi-square test.
+/// Outcome of a chi-square test of counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChiSquare {
     /// Pearson's statistic after pooling.
     pub statistic: f64,
     /// Degrees of freedom: cells after pooling, less one.
     pub degrees_of_freedom: usize,
-    /// Probability of a statistic at least this large when the density is right.
+    /// Probability of a statistic at least this large if the density is right.
     pub p_value: f64,
     /// Number of cells with an expected count below the limit, which were pooled.
     pub pooled: usize,
 }
 
-/// Pearson's chi-square test of counts against expected counts.
+/// Computes Pearson's chi-square test of counts against expected counts.
 ///
-/// Cells expected to hold fewer than `min_expected` samples (5 by custom) are pooled, smallest first, until each pool holds that many; a remainder joins
-/// the last pool. A sample in a cell that expects none is a failure outright: p-value 0.
+/// Cells expected to hold fewer than `min_expected` samples (5 by custom) are pooled, smallest first, until each pool holds that many. A
+/// remainder joins the last pool. A sample in a cell that expects none is a failure outright, with the p-value 0.
 ///
-/// One degree of freedom is taken for the total, so `expected` must sum to the number of samples. Give discarded samples a cell of their own. A density
-/// whose mass is not 1 shows in that sum: assert it beside this test, which alone would miss a uniform scale.
+/// One degree of freedom is taken for the total, so `expected` must sum to the number of samples. Give discarded samples a cell of their
+/// own. A density whose mass is not 1 shows in that sum: assert the sum beside this test, which alone would miss a uniform scale.
 ///
 /// - Units: counts.
 /// - Shape: `observed` and `expected` of one length.
@@ -112,7 +112,7 @@ pub fn chi_square(observed: &[u64], expected: &[f64], min_expected: f64) -> ChiS
         }
     }
     if pool_expected > 0.0 {
-        // The order is ascending, so what is left over is small: it joins the smallest cell kept.
+        // The order is ascending, so the remainder is small: it joins the smallest cell kept.
         match cells.iter_mut().min_by(|a, b| a.1.total_cmp(&b.1)) {
             Some(cell) => {
                 cell.0 += pool_observed;
@@ -130,7 +130,7 @@ pub fn chi_square(observed: &[u64], expected: &[f64], min_expected: f64) -> ChiS
     result
 }
 
-/// Kolmogorov-Smirnov distance between samples and a continuous distribution.
+/// Returns the Kolmogorov-Smirnov distance between samples and a continuous distribution.
 ///
 /// `D = max |F_n(x) - F(x)|`, taken on both sides of each step.
 ///
@@ -154,7 +154,7 @@ pub fn ks_statistic(samples: &mut [f64], cdf: impl Fn(f64) -> f64) -> f64 {
     d
 }
 
-/// Probability of a Kolmogorov-Smirnov distance of at least `d` from `n` samples of the right distribution.
+/// Returns the probability of a Kolmogorov-Smirnov distance of at least `d` from `n` samples of the right distribution.
 ///
 /// Kolmogorov's limit law with Stephens' small-sample correction `(sqrt(n) + 0.12 + 0.11/sqrt(n)) d`; good to about 1% of the p-value from n = 20 on.
 ///
@@ -167,7 +167,7 @@ pub fn ks_p_value(d: f64, n: usize) -> f64 {
         return f64::NAN;
     }
     if t < 0.2 {
-        // The alternating series needs ever more terms here, where the answer is 1 to twelve digits.
+        // The alternating series needs more and more terms here, where the result is 1 to twelve digits.
         return 1.0;
     }
     let mut sum = 0.0;

@@ -1,4 +1,4 @@
-//! Strategies of parameters, for [`Subject::any_material`](crate::Subject::any_material).
+//! Strategies that draw parameters, for [`Subject::any_material`](crate::Subject::any_material).
 //!
 //! ```
 //! use hairis_conformance::proptest::prelude::*;
@@ -28,10 +28,10 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use proptest::test_runner::RngSeed;
 
-/// A configuration of `proptest` for the tests of a file: so many cases, which are the same in
-/// every run, and regressions beside the file, in `proptest-regressions`.
+/// Returns a configuration of `proptest` for the tests of a file. It runs `cases` cases, which are the same in every run, and keeps
+/// regressions beside the file, in `proptest-regressions`.
 ///
-/// `HAIRIS_SEED` and `HAIRIS_CASES` apply.
+/// The environment variables `HAIRIS_SEED` and `HAIRIS_CASES` apply.
 #[must_use]
 pub fn config(file: &'static str, cases: u32) -> ProptestConfig {
     ProptestConfig {
@@ -42,8 +42,7 @@ pub fn config(file: &'static str, cases: u32) -> ProptestConfig {
     }
 }
 
-/// Numbers of a closed range, its ends and 0 more often than chance: uniform in their logarithm
-/// where both ends are above 0.
+/// Draws numbers of a closed range, its ends and 0 more often than chance. They are uniform in their logarithm if both ends are above 0.
 ///
 /// - Domain: finite ends, the smaller first.
 pub fn range([least, most]: [f32; 2]) -> impl Strategy<Value = f32> + Clone {
@@ -55,8 +54,7 @@ pub fn range([least, most]: [f32; 2]) -> impl Strategy<Value = f32> + Clone {
     prop_oneof![6 => inside, 2 => select(vec![0.0_f32.clamp(least, most), least, most])]
 }
 
-/// Any finite numbers: those of directions, and those that arithmetic trips over, more often than
-/// chance.
+/// Draws any finite numbers, with components of directions and numbers at which arithmetic tends to fail more often than chance.
 pub fn finite() -> impl Strategy<Value = f32> + Clone {
     const SPECIAL: [f32; 14] = [
         0.0,
@@ -82,13 +80,12 @@ pub fn finite() -> impl Strategy<Value = f32> + Clone {
     ]
 }
 
-/// Vectors of [`finite`] numbers.
+/// Draws vectors whose components are [`finite`] numbers.
 pub fn vectors() -> impl Strategy<Value = Vec3> + Clone {
     uniform3(finite()).prop_map(Vec3::from_array)
 }
 
-/// Finite numbers of at least 0 up to `most`, of any size: 0 and the largest more often than
-/// chance.
+/// Draws finite numbers from 0 to `most`, of any size, with 0 and the largest more often than chance.
 ///
 /// - Domain: `most` is at least 1.
 pub fn intensity(most: f32) -> impl Strategy<Value = f32> + Clone {
@@ -100,16 +97,16 @@ pub fn intensity(most: f32) -> impl Strategy<Value = f32> + Clone {
     ]
 }
 
-/// Three of [`intensity`]: linear RGB.
+/// Draws three numbers of [`intensity`], as a linear RGB colour.
 pub fn intensities(most: f32) -> impl Strategy<Value = [f32; 3]> + Clone {
     uniform3(intensity(most))
 }
 
-/// Any legal parameters of hair: a quarter has the same width everywhere.
+/// Draws any legal parameters of hair, a quarter of them with the same width everywhere.
 ///
 /// # Panics
 ///
-/// If a rule refuses a number of its own range, when a case is drawn.
+/// Panics if a rule rejects a number of its own range, when a case is drawn.
 pub fn hair() -> impl Strategy<Value = AnyMaterial<HairParams>> {
     let width = || range([MIN_WIDTH, MAX_WIDTH]);
     let each = (uniform3(width()), width(), width());

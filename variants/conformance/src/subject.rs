@@ -1,4 +1,4 @@
-//! The model under test, and its claims.
+//! Interface of a model under test, with its claims.
 
 use core::fmt;
 use hairis::model::Model;
@@ -9,82 +9,81 @@ use proptest::prelude::*;
 /// Parameters of the subject's model.
 pub type ParamsOf<S> = <<S as Subject>::Model as Model>::Params;
 
-/// Materials by name.
+/// Materials, each with a name that failures print.
 pub type Materials<S> = Vec<(&'static str, ParamsOf<S>)>;
 
-/// A model under test: implement it on a unit struct and pass that to [`conformance!`](crate::conformance).
+/// Model under test. Implement this trait on a unit struct, and pass the struct to [`conformance!`](crate::conformance).
 ///
-/// Two functions are required. Whatever else is left out, the model still has to be total, to sample the density it
-/// reports, and to give the same results on one lane, on eight and in slices.
+/// Two functions are required. Even if all others are left out, the model still has to be total, to sample the density it reports, and to
+/// give the same results on one lane, on eight and in slices.
 pub trait Subject: Sync {
-    /// The model: a marker without borrowed data.
+    /// Model under test: a marker without borrowed data.
     type Model: Model + 'static;
 
-    /// The model's marker.
+    /// Returns the marker of the model.
     fn model(&self) -> Self::Model;
 
-    /// The material of these parameters.
+    /// Makes the material of these parameters.
     fn material(&self, params: &ParamsOf<Self>) -> Material<Self::Model> {
         Material::new(&self.model(), params)
     }
 
-    /// Everyday materials: every property is tested on them.
+    /// Returns everyday materials, on which every property is tested.
     ///
-    /// Two to six of them, from narrow to wide lobes and of different colours. One without any energy is legal.
+    /// Give two to six materials, from narrow to wide lobes and of different colours. A material without any energy is legal.
     fn materials(&self) -> Materials<Self>;
 
-    /// Materials at the ends of the parameters' ranges: totality, masks, lanes and slices are tested on them as well.
+    /// Returns materials at the ends of the parameters' ranges, on which totality, masks, lanes and slices are tested as well.
     fn extremes(&self) -> Materials<Self> {
         Vec::new()
     }
 
-    /// Materials without absorption, on which the furnace test runs if [`Claims::furnace`] is set.
+    /// Returns materials without absorption, on which the furnace test runs if [`Claims::furnace`] is set.
     fn white(&self) -> Materials<Self> {
         Vec::new()
     }
 
-    /// Any legal material, with the ends of ranges more often than chance: see
-    /// [`strategies`](crate::strategies).
+    /// Returns a strategy for any legal material, with the ends of ranges more often than chance: see [`strategies`](crate::strategies).
     ///
-    /// Properties without a tolerance draw half of their materials from it. Properties with a
-    /// tolerance, which is stated for everyday materials, do not.
+    /// Properties without a tolerance draw half of their materials from this strategy. Properties with a tolerance, which is stated for
+    /// everyday materials, do not.
     fn any_material(&self) -> Option<BoxedStrategy<AnyMaterial<ParamsOf<Self>>>> {
         None
     }
 
-    /// Claims of the model, and its tolerances.
+    /// Returns the claims of the model, with their tolerances.
     fn claims(&self) -> Claims {
         Claims::default()
     }
 
-    /// Inclinations and azimuths of `wi` in rad at which densities jump or have a kink.
+    /// Returns the inclinations and azimuths of `wi` in rad at which densities jump or have a kink.
     ///
-    /// Quadrature refines where it has to, and starts from where samples fall. Edges that it is given make it faster and
-    /// more accurate. Values outside the domain are ignored.
+    /// Quadrature refines where necessary, and starts from where samples fall. Stated edges make it faster and more accurate. Values
+    /// outside the domain are ignored.
     fn edges(&self, params: &ParamsOf<Self>, hit: &Hit) -> [Vec<f64>; 2] {
         let _ = (params, hit);
         [Vec::new(), Vec::new()]
     }
 
-    /// Largest weight of any channel of any sample with these lobes, if the model has a bound in closed form.
+    /// Returns the largest weight of any channel of any sample with these lobes, if the model has a bound in closed form.
     fn weight_bound(&self, params: &ParamsOf<Self>, hit: &Hit, lobes: LobeMask) -> Option<f64> {
         let _ = (params, hit, lobes);
         None
     }
 
-    /// The model in double precision at this hit, if there is one.
+    /// Returns the model in double precision at this hit, if there is one.
     fn reference(&self, params: &ParamsOf<Self>, hit: &Hit) -> Option<Expected> {
         let _ = (params, hit);
         None
     }
 
-    /// Further materials to compare with the [`reference`](Self::reference), for instance random ones.
+    /// Returns further materials to compare with the [`reference`](Self::reference), for instance random ones.
     fn random_materials(&self) -> Vec<ParamsOf<Self>> {
         Vec::new()
     }
 }
 
-/// Subject whose materials have the types of [`Conserving`] without its limit, as handles of models chosen at run time have.
+/// Subject whose materials have the types of [`Conserving`] without its limit, like the handles of models chosen at run time.
 ///
 /// A package that lists models has compiled these types already. A test of the list compares them with the models' own types.
 #[derive(Clone, Copy, Debug)]
@@ -128,7 +127,7 @@ impl<S: Subject> Subject for AsConserving<S> {
     }
 }
 
-/// Parameters of a material that a strategy has drawn, and the code that makes them.
+/// Parameters of a material that a strategy has drawn, with the code that makes them.
 #[derive(Clone)]
 pub struct AnyMaterial<P> {
     pub(crate) params: P,
@@ -136,7 +135,7 @@ pub struct AnyMaterial<P> {
 }
 
 impl<P> AnyMaterial<P> {
-    /// Parameters and their code.
+    /// Combines parameters with the code that makes them.
     #[must_use]
     pub const fn new(params: P, code: String) -> Self {
         Self { params, code }
@@ -144,7 +143,7 @@ impl<P> AnyMaterial<P> {
 }
 
 impl<P: fmt::Debug> From<P> for AnyMaterial<P> {
-    /// Parameters whose `Debug` form is code, as that of a structure with public fields is.
+    /// Converts parameters whose `Debug` form is code, as it is for a structure with public fields.
     fn from(params: P) -> Self {
         let code = format!("{params:?}");
         Self { params, code }
@@ -163,40 +162,40 @@ impl<P> fmt::Debug for AnyMaterial<P> {
 /// twice the worst case that `cargo test -- --nocapture` prints.
 #[derive(Clone, Debug)]
 pub struct Claims {
-    /// S is the same with `wo` and `wi` exchanged, to this error, beyond what rounding the directions changes.
+    /// Error to which S is the same with `wo` and `wi` exchanged, beyond what rounding the directions changes.
     pub reciprocal: Option<f64>,
-    /// White materials return all light: the sum of the lobes' albedos is 1, to this absolute error.
+    /// Absolute error to which white materials return all light: the sum of the lobes' albedos is 1.
     pub furnace: Option<f64>,
-    /// The model reads [`Hit::h`]; if not, results must not depend on it.
+    /// True if the model reads [`Hit::h`]. If not, results must not depend on `h`.
     pub near_field: bool,
-    /// Levels that fuse as one lane does ([`Level::fuses`](hairis::simd::Level::fuses)) give its bits.
+    /// True if levels that fuse as one lane does ([`Level::fuses`](hairis::simd::Level::fuses)) give its bits.
     pub same_bits: bool,
-    /// Levels that fuse otherwise give one lane's results to this error, beyond what rounding the directions changes.
+    /// Error to which levels that fuse otherwise give one lane's results, beyond what rounding the directions changes.
     pub lanes: f64,
-    /// Levels that fuse otherwise sample the direction of one lane to this distance, beyond what rounding the numbers changes.
+    /// Distance to which levels that fuse otherwise sample the direction of one lane, beyond what rounding the numbers changes.
     pub direction: f64,
-    /// A sample's value and density are those of its direction, to this error, beyond what rounding the directions changes.
+    /// Error to which a sample's value and density are those of its direction, beyond what rounding the directions changes.
     pub sample_eval: f64,
-    /// A sample's weight is `value cos theta_i / pdf`, to this error.
+    /// Error to which a sample's weight is `value cos theta_i / pdf`.
     pub weight: f64,
-    /// The lobes sum to the value, to this error.
+    /// Error to which the lobes sum to the value.
     pub lobe_sum: f64,
     /// Largest share of samples that may be discarded.
     pub discarded: f64,
-    /// The density integrates to the share of samples that are not discarded, to this absolute error.
+    /// Absolute error to which the density integrates to the share of samples that are not discarded.
     pub integral: f64,
-    /// The distribution of samples of Sobol points is the integral of the density, to this absolute error.
+    /// Absolute error to which the distribution of samples of Sobol points is the integral of the density.
     pub inversion: f64,
-    /// `albedo` is the integral of `S cos theta_i`, to this error.
+    /// Error to which `albedo` is the integral of `S cos theta_i`.
     pub albedo: f64,
-    /// Random samples per chi-square test.
+    /// Number of random samples per chi-square test.
     pub samples: u32,
-    /// Sobol points that samples are drawn from: a power of two.
+    /// Number of Sobol points that samples are drawn from, a power of two.
     pub points: u32,
 }
 
 impl Default for Claims {
-    /// No claim beyond the promises of [`Model`], and tolerances for lobes of 0.01 rad and wider.
+    /// Returns no claim beyond the promises of [`Model`], and tolerances for lobes of 0.01 rad and wider.
     fn default() -> Self {
         Self {
             reciprocal: None,
@@ -218,12 +217,12 @@ impl Default for Claims {
     }
 }
 
-/// A model in double precision at one hit, and the agreement to expect: made by [`Subject::reference`].
+/// Model in double precision at one hit, with the agreement to expect: made by [`Subject::reference`].
 #[derive(Debug)]
 pub struct Expected {
-    /// The model's formulas.
+    /// Formulas of the model.
     pub reference: Box<dyn Reference<f64>>,
-    /// Agreement to expect.
+    /// Agreement to expect of the model with the formulas.
     pub tolerance: Tolerance,
 }
 
@@ -236,11 +235,11 @@ pub struct Tolerance {
     pub pdf: f64,
     /// Relative error of each lobe's value and density; `None` if the reference has no lobes.
     pub lobes: Option<f64>,
-    /// Lobes are compared where every one of them has at least this value.
+    /// Least value that every lobe has where lobes are compared.
     pub lobe_floor: f64,
-    /// Values and densities below this are compared absolutely.
+    /// Values and densities below this floor are compared absolutely.
     pub floor: f64,
-    /// Backward error in rad: results may also differ by what moving the direction by so much changes.
+    /// Backward error in rad: results may also differ by the change that moving the direction by this angle causes.
     pub rounding: f64,
     /// Largest distance between the sampled directions; `None` if the reference has no sampler.
     pub direction: Option<f64>,

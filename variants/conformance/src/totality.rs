@@ -1,4 +1,4 @@
-//! Every finite input gives finite results that are not negative.
+//! Property that every finite input gives finite results that are not negative.
 
 use crate::cases::inputs::Inputs;
 use crate::cases::{Property, Trial};
@@ -11,10 +11,10 @@ use hairis::{Eval, Lobe, LobeMask, Sample8};
 
 const NAME: &str = "results are finite and not negative";
 
-/// Packets of eight materials.
+/// Number of packets of eight materials.
 const CASES: usize = 12_000;
 
-/// Whether a number is what values, densities and weights have to be.
+/// Returns true if a number is finite and not negative, as values, densities and weights have to be.
 fn sound(x: f32) -> bool {
     x.is_finite() && x >= 0.0
 }
@@ -30,7 +30,7 @@ fn sound_lobe(lobe: &LobeEval) -> bool {
         .all(sound)
 }
 
-/// Reason why a lane of a sample is not valid.
+/// Returns the reason why a lane of a sample is not valid.
 fn fault(
     s: &Sample8,
     lane: usize,
@@ -73,13 +73,13 @@ fn fault(
     }
 }
 
-/// Values, densities, weights, colours and albedos are finite and not negative for every finite input, with all lobes and
-/// some, on one lane and eight; sampled directions are unit vectors; discarded samples have neither value, density nor
-/// weight, and are `None` in scalar.
+/// Checks that values, densities, weights, colours and albedos are finite and not negative for every finite input, with all lobes and
+/// some, on one lane and eight. Sampled directions are unit vectors. Discarded samples have neither value, density nor weight, and are
+/// `None` in scalar.
 ///
 /// # Errors
 ///
-/// At the first input where something is not.
+/// Returns a failure if a result is none of these.
 pub fn results_are_finite(subject: &dyn ErasedSubject) -> Outcome {
     let property = Property {
         name: NAME,
@@ -93,7 +93,7 @@ pub fn results_are_finite(subject: &dyn ErasedSubject) -> Outcome {
     property.check([], |trial, []| is_sound(subject, trial))
 }
 
-/// Whether every result of a case is finite and not negative.
+/// Checks that every result of a case is finite and not negative.
 pub(crate) fn is_sound(subject: &dyn ErasedSubject, trial: &Trial<'_>) -> Outcome {
     let (hits, wi, xi, mask) = (trial.hits, trial.wi, trial.xi, trial.lobes);
     let fail = |what: &str, lane: usize, how: &str, got: String| {
@@ -172,7 +172,7 @@ pub(crate) fn is_sound(subject: &dyn ErasedSubject, trial: &Trial<'_>) -> Outcom
                 );
             }
         }
-        // One lane repeats, bit for bit: there is no state.
+        // One lane gives the same bits again, because there is no state.
         let sample = bsdf.sample(xi[lane]);
         if let Some(s) = sample {
             let numbers = [s.value, s.weight].concat();
@@ -193,7 +193,7 @@ pub(crate) fn is_sound(subject: &dyn ErasedSubject, trial: &Trial<'_>) -> Outcom
                 format!("{sample:?}"),
             );
         }
-        // Albedos are integrals, and cost as much as all else of a case.
+        // Albedos are integrals, and take as long as everything else of a case.
         for conserving in if lane == 0 { &[false, true][..] } else { &[] } {
             let bsdf = if *conserving {
                 &bsdf.conserving()

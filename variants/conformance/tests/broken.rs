@@ -1,5 +1,4 @@
-//! A sound model of two lobes, and copies of it with one fault each; only here and in `slow` do these tests
-//! implement [`Model`].
+//! Sound model of two lobes, and copies of it with one fault each. Only this file and `slow` of these tests implement [`Model`].
 
 mod slow;
 mod subject;
@@ -14,11 +13,11 @@ use hairis::model::{GRAZING, LobeEval, Model, SampleLanes};
 use hairis::simd::{Broadcast, LaneStruct, Lanes, Path, Scalar, Vec3x, lanes3, store3};
 use hairis::{Eval, Hit, Lobe, LobeMask, PerLobe};
 
-/// Bits of the number 1. Compilers load constants in vectors, and compute with a fault beside them: other bits, or padding, would be a
-/// number that overflows now and then.
+/// Bits of the number 1. Compilers load constants in vectors, and compute with a fault beside them. Other bits, or padding, would now and
+/// then be a number that overflows.
 const ONE: u32 = 1.0_f32.to_bits();
 
-/// Faults of a model, by number. They are constants of a material: a type per fault would be compiled for each.
+/// Faults of a model, by number. They are constants of a material, because a type per fault would be compiled for each.
 pub(crate) const SOUND: u32 = ONE;
 pub(crate) const DENSITY_TOO_HIGH: u32 = ONE + 1;
 pub(crate) const WRONG_LANE: u32 = ONE + 2;
@@ -43,7 +42,7 @@ pub(crate) const NAN_IS_A_NUMBER: u32 = ONE + 20;
 pub(crate) const DIVIDES_BY_ZERO: u32 = ONE + 21;
 pub(crate) const NEGATIVE_ROUNDED_DOWN: u32 = ONE + 22;
 
-/// A fibre with a diffuse lobe, uniform on the sphere, and a cone of mirror directions.
+/// Fibre with a diffuse lobe, uniform on the sphere, and a cone of mirror directions.
 ///
 /// `S = kd / pi^2 + ks c(sin theta_i + sin theta_o) / (2 pi)`, with `c` the Cauchy density of width `w`.
 #[derive(Clone, Copy, Debug)]
@@ -62,13 +61,13 @@ pub(crate) struct Params {
 }
 
 hairis::simd::lane_struct! {
-    /// Constants of a material.
+    /// Constants of a material of the fibre.
     pub struct Material {
-        /// Colours, linear RGB.
+        /// Colour of the diffuse lobe in linear RGB.
         pub kd: [C; 3],
-        /// As `kd`, of the cone.
+        /// Colour of the cone in linear RGB.
         pub ks: [C; 3],
-        /// Width of the cone.
+        /// Width of the cone in `sin theta`.
         pub width: C,
         /// Probability of each lobe.
         pub selection: [C; 2],
@@ -76,24 +75,24 @@ hairis::simd::lane_struct! {
 }
 
 hairis::simd::lane_struct! {
-    /// Constants of a shading point.
+    /// Constants of a shading point of the fibre.
     pub struct Point {
-        /// As in the material.
+        /// Colour of the diffuse lobe, as in the material.
         pub kd: [C; 3],
-        /// As in the material.
+        /// Colour of the cone, as in the material.
         pub ks: [C; 3],
-        /// As in the material.
+        /// Width of the cone, as in the material.
         pub width: C,
-        /// As in the material.
+        /// Probability of each lobe, as in the material.
         pub selection: [C; 2],
         /// Sine of `theta_o`.
         pub sin_theta_o: C,
-        /// Angle under which a bell of this width sees the sphere, rad.
+        /// Angle that the sphere subtends at a bell of this width, in rad.
         pub span: C,
     }
 }
 
-/// Constants, and the fault with which they are packed, taken out of lanes and read. All lanes have the same.
+/// Constants, with the fault with which they are packed, taken out of lanes and read. All lanes have the same fault.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Faulty<T> {
     fault: u32,
@@ -151,12 +150,12 @@ impl<T: LaneStruct> LaneStruct for Faulty<T> {
     }
 }
 
-/// Number of lanes.
+/// Returns the number of lanes.
 const fn width_of<L>() -> usize {
     size_of::<L>() / size_of::<f32>()
 }
 
-/// The lobes at a direction, neither with its colour, its cosine, and whether there are any.
+/// Returns the lobes at a direction without their colours applied, the cosine of the direction, and the mask of lanes that scatter.
 #[inline(always)]
 fn shapes<L: Lanes, C: Broadcast<L>>(
     prepared: &Point<C>,
@@ -168,7 +167,7 @@ fn shapes<L: Lanes, C: Broadcast<L>>(
     let cos = cos_sq.sqrt();
     let sound = L::and(c(GRAZING).lt(cos), wi.x.mul_add(wi.x, cos_sq).lt(c(4.0)));
     let off = wi.x + prepared.sin_theta_o.lanes();
-    // NaN where wo is no direction.
+    // NaN where `wo` is not a direction.
     let sound = L::and(sound, off.abs().lt(c(4.0)));
     let bell = L::quotient(width, off.mul_add(off, width * width));
     let diffuse = LobeEval {
@@ -184,7 +183,7 @@ fn shapes<L: Lanes, C: Broadcast<L>>(
     ([diffuse, cone], cos, sound)
 }
 
-/// `sin theta_i` at which the cone's cdf is `xi`.
+/// Returns the `sin theta_i` at which the cone's cdf is `xi`.
 #[inline(always)]
 fn cone_sine<L: Lanes, C: Broadcast<L>>(prepared: &Point<C>, xi: L) -> L {
     let (one, width, sin_theta_o) = (
@@ -203,7 +202,7 @@ fn cone_sine<L: Lanes, C: Broadcast<L>>(prepared: &Point<C>, xi: L) -> L {
 }
 
 impl Fiber {
-    /// The sums over both lobes; 0 where a lane is not sound.
+    /// Returns the sums over both lobes, which are 0 where a lane is not sound.
     #[inline(always)]
     fn total<L: Lanes, C: Broadcast<L>>(
         prepared: &Faulty<Point<C>>,
@@ -250,7 +249,7 @@ impl Fiber {
             pdf = pdf * (1.0 + 4.0 * f32::EPSILON) + pdf * 1e-4;
         }
         if prepared.fault == NAN_AT_THE_POLE {
-            // 0 / 0 on the axis.
+            // The quotient is 0 / 0 on the axis.
             let cos_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
             pdf = pdf * cos_sq / (wi.y * wi.y + wi.z * wi.z);
         }
@@ -338,7 +337,7 @@ impl Model for Fiber {
             C::splat(lobes.factor(CONE)),
         );
         let [p_d, p_s] = [prepared.selection[0] * d, prepared.selection[1] * s];
-        // Quotients: that of a number and itself is 1 however it is rounded.
+        // Quotients, because a number divided by itself is 1 in every rounding mode.
         let sum = (p_d + p_s).max(C::splat(f32::MIN_POSITIVE));
         let times = |x: [C; 3], by: C| [x[0] * by, x[1] * by, x[2] * by];
         let kd = if prepared.fault == MASK_LEAKS {
@@ -412,7 +411,7 @@ impl Model for Fiber {
         if prepared.fault == AZIMUTH_UNEVEN {
             around = around * (one - around).mul_add(c(0.02), one);
         }
-        // The azimuth is uniform: the double of an angle in [-pi/2, pi/2].
+        // The azimuth is uniform: twice an angle in [-pi/2, pi/2].
         let (s, k) = sin_cos_half_turn((around - 0.5) * PI);
         let mut wi = Vec3x::new(sin, cos * (k * k - s * s), cos * ((s + s) * k));
         let (lobes, _, sound) = shapes(prepared, wi);
@@ -436,7 +435,7 @@ impl Model for Fiber {
         }
         let slot = L::select(is_diffuse, zero, one);
         let weight = [value[0] * by, value[1] * by, value[2] * by];
-        // A discarded sample has nothing.
+        // A discarded sample has neither value, density nor weight.
         let kept = |x: L| L::select(sound, x, zero);
         SampleLanes {
             wi,

@@ -1,4 +1,4 @@
-//! The suite on a sound model, and each property on a model that breaks it.
+//! Tests of the suite on a sound model, and of each property on a model that breaks it.
 #![allow(clippy::unwrap_used, reason = "a test may panic: that is how it fails")]
 
 mod broken;
@@ -13,7 +13,7 @@ use hairis_conformance::{
 
 hairis_conformance::conformance!(sound, crate::Broken(crate::SOUND));
 
-/// The property fails, and its message names what is wrong.
+/// Asserts that the property fails, and that its message names the fault.
 #[track_caller]
 fn assert_fails(outcome: Outcome, why: &str) {
     let Err(failure) = outcome else {
@@ -149,7 +149,7 @@ fn lanes_find_packets_that_differ_from_scalar() {
 
 #[test]
 fn levels_find_a_lane_of_another_shading_point() {
-    // Equal lanes hide which of them `lane` returns; the packed material is found out by another property.
+    // Equal lanes hide which of them `lane` returns. Another property detects the packed material.
     assert_fails(lanes::lanes_equal_scalar(&Broken(WRONG_LANE)), "`lane`");
 }
 
@@ -163,7 +163,7 @@ fn h_is_found_where_it_is_not_claimed() {
 
 #[test]
 fn slices_find_entries_that_differ_from_packets() {
-    // Only levels that work off more than one packet at a time have lanes of their own for slices.
+    // Only levels that process more than one packet at a time have separate lanes for slices.
     if hairis::simd::Level::available().any(|level| level != hairis::simd::Level::portable()) {
         assert_fails(
             slices::slices_equal_packets(&Broken(WIDE_SLICES_DIFFER)),
@@ -209,7 +209,7 @@ fn albedo_is_held_against_its_integral() {
 
 #[test]
 fn the_furnace_finds_lost_light() {
-    /// A fibre whose white material absorbs.
+    /// Fibre whose white material absorbs.
     struct Grey;
     impl Subject for Grey {
         type Model = Fiber;

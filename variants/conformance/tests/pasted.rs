@@ -1,5 +1,4 @@
-//! Failures print code that fails again: files of `pasted` are what failures print, and are
-//! compiled here.
+//! Tests that failures print code that fails again: the files of `pasted` are what failures print, and are compiled here.
 
 use crate::Broken;
 use crate::broken::{
@@ -63,7 +62,7 @@ fn a_value_that_is_not_reciprocal() {
     );
 }
 
-/// The sound fibre, whose leak of masks is in materials without a name alone.
+/// Sound fibre that leaks masks only in materials without a name.
 struct LeaksUnnamed;
 
 impl Subject for LeaksUnnamed {

@@ -1,4 +1,4 @@
-//! The fibre in double precision, right and wrong, beside the sound model.
+//! Tests of the sound model beside the fibre in double precision, with right and wrong formulas.
 
 use crate::broken::{Broken, Fiber, Params, SOUND};
 use core::f64::consts::PI;
@@ -9,7 +9,7 @@ use hairis_conformance::{
     Claims, Expected, LobeAt, Materials, Reference, ReferenceSample, Subject, Tolerance,
 };
 
-/// Errors of a reference, relative: of the value, of the density, of a lobe; and in the number that a lobe is chosen by.
+/// Relative errors of a reference in the value, the density and a lobe, and the error in the number that a lobe is chosen by.
 #[derive(Clone, Copy, Debug, Default)]
 struct Errors {
     value: f64,
@@ -18,7 +18,7 @@ struct Errors {
     choice: f64,
 }
 
-/// The formulas of the fibre.
+/// Formulas of the fibre in double precision.
 #[derive(Debug)]
 struct Formulas {
     kd: [f64; 3],
@@ -38,7 +38,7 @@ impl Formulas {
         self.kd.iter().chain(&self.ks).any(|x| *x > 0.0)
     }
 
-    /// Angle under which the cone's bell is seen from 0 to this sine.
+    /// Returns the angle that the interval from 0 to this sine subtends at the cone's bell.
     fn angle(&self, sin: f64) -> f64 {
         ((sin + self.sin_theta_o) / self.width).atan()
     }
@@ -86,7 +86,7 @@ impl Reference<f64> for Formulas {
 }
 
 impl Formulas {
-    /// Value and density of both lobes.
+    /// Returns value and density of both lobes.
     fn both(&self, [u, ..]: [f64; 3]) -> [[f64; 2]; 2] {
         let off = u + self.sin_theta_o;
         let bell = self.width / (off * off + self.width * self.width);
@@ -98,7 +98,7 @@ impl Formulas {
     }
 }
 
-/// The sound fibre beside these formulas.
+/// Sound fibre whose reference are these formulas.
 struct Beside(Errors);
 
 impl Subject for Beside {

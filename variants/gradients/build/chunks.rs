@@ -1,31 +1,31 @@
-//! Chunks of the operations of a derivative, and where packets keep numbers from chunk to chunk.
+//! Chunks of the operations of a derivative, and the places where packets keep numbers from chunk to chunk.
 
 use core::ops::{Range, RangeInclusive};
 use hairis_shaders::Graph;
 use std::collections::BTreeSet;
 
-/// Operations of a chunk. Two of them fit what a CPU looks ahead, so that it begins a packet before the one before is done.
+/// Number of operations of a chunk. Two chunks fit the window of a CPU, which can then begin a packet before the previous one is done.
 const OPERATIONS: RangeInclusive<usize> = 48..=80;
 
 /// Operations that rows need, in the order of the graph, chunk by chunk.
 pub(crate) struct Chunks<'a> {
     graph: &'a Graph,
     order: Vec<u32>,
-    /// Position of the operation that reads a number last.
+    /// Position of the last operation that reads a number.
     last: Vec<usize>,
     /// Operations of the chunk.
     chunk: Range<usize>,
-    /// Numbers that packets keep and the chunk has named.
+    /// Numbers that packets keep and that the current chunk has already named.
     named: BTreeSet<u32>,
-    /// Place of each number in a packet, if it is kept.
+    /// Place of each number in a packet, if the packet keeps it.
     slots: Vec<Option<usize>>,
-    /// Places of numbers that nothing reads any more.
+    /// Places of numbers that no later operation reads.
     free: Vec<usize>,
     len: usize,
 }
 
 impl<'a> Chunks<'a> {
-    /// Chunks of what these rows need. Packets keep `len` other numbers first.
+    /// Prepares the chunks of the operations that these rows need. Packets keep `len` other numbers first.
     pub(crate) fn new(graph: &'a Graph, rows: &[u32], len: usize) -> Self {
         let places = (0_u32..).zip(graph.nodes()).zip(graph.needed(rows));
         let places = places.filter(|((_, node), is_needed)| *is_needed && node.is_computed());
@@ -48,12 +48,12 @@ impl<'a> Chunks<'a> {
         }
     }
 
-    /// Count of the numbers that a packet keeps.
+    /// Returns the count of the numbers that a packet keeps.
     pub(crate) fn len(&self) -> usize {
         self.len
     }
 
-    /// Operations of the next chunk: it ends where the fewest of its numbers are read later.
+    /// Returns the operations of the next chunk, which ends where the fewest of its numbers are read later.
     pub(crate) fn next_chunk(&mut self) -> Option<Vec<u32>> {
         for place in core::mem::take(&mut self.named) {
             if self.last[place as usize] < self.chunk.end {
@@ -77,7 +77,7 @@ impl<'a> Chunks<'a> {
         (len > 0).then(|| self.order[self.chunk.clone()].to_vec())
     }
 
-    /// Operands of this operation that the chunk has not named yet, and their places in a packet.
+    /// Returns the operands of an operation that the chunk has not named yet, and their places in a packet.
     pub(crate) fn loaded(&mut self, place: u32) -> Vec<(u32, usize)> {
         let mut loaded = Vec::new();
         for operand in self.graph.node(place).operands() {
@@ -90,7 +90,7 @@ impl<'a> Chunks<'a> {
         loaded
     }
 
-    /// Place in a packet for the result of this operation of the chunk, if a later one reads it.
+    /// Returns a place in a packet for the result of an operation of the chunk if a later chunk reads it.
     pub(crate) fn kept(&mut self, place: u32) -> Option<usize> {
         if self.last[place as usize] < self.chunk.end {
             return None;

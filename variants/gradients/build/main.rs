@@ -1,7 +1,7 @@
 //! Prints the derivatives of every model of the list as Rust over lanes.
 //!
-//! Each model is traced, its graph is differentiated, and each operation of the result becomes a line. Levels that fuse have a
-//! graph of their own. Each model has a file, of which the library includes those in its list.
+//! Each model is traced, its graph is differentiated, and each operation of the result becomes a line. Levels that fuse have a graph of
+//! their own. Each model has a file, and the library includes the files of the models in its list.
 
 mod chunks;
 
@@ -19,11 +19,11 @@ use std::path::Path;
 const RESULTS: usize = 4;
 /// Numbers of a hit and a direction: `wo`, `h`, `wi`.
 const ARGUMENTS: usize = 7;
-/// Numbers that each hit reads: these, and a weight per result. A packet keeps them first.
+/// Numbers that are read for each hit: the arguments, and a weight per result. A packet keeps them first.
 const INPUTS: usize = ARGUMENTS + RESULTS;
-/// Numbers that are written: the results, and a derivative per argument. A packet keeps them second.
+/// Numbers that are written for each hit: the results, and a derivative per argument. A packet keeps them second.
 const OUTPUTS: usize = RESULTS + ARGUMENTS;
-/// Lints take minutes for a hundred thousand generated lines, and find nothing that somebody could mend.
+/// Lints take minutes for a hundred thousand generated lines, and report nothing that could be fixed by hand.
 const LINTED: &str = "#[cfg(not(clippy))]";
 
 fn main() {
@@ -37,7 +37,8 @@ fn main() {
     }
 }
 
-/// Prints the derivatives of a model, after the bodies so far: models that differ in their sampler share that of the value.
+/// Printer of the derivatives of a model. Models that differ only in their sampler share the body for the value with the models printed
+/// so far.
 struct Print<'a>(ModelId, &'a mut Vec<String>);
 
 impl Visitor for Print<'_> {
@@ -100,7 +101,7 @@ impl Visitor for Print<'_> {
     }
 }
 
-/// The derivatives by parameters of the weighted sum of a material's numbers, in one lane.
+/// Prints the derivatives by parameters of the weighted sum of a material's numbers, in one lane.
 fn parameters(program: &Program) -> String {
     let gradient = program.function(Call::Material).gradient();
     let fields = gradient.output().fields[program.material().fields.len()..].iter();
@@ -134,7 +135,7 @@ fn parameters(program: &Program) -> String {
     )
 }
 
-/// Places of the numbers of a material that any of the functions reads.
+/// Returns the places of the numbers of a material that at least one of the functions reads.
 fn read(functions: &[&Function], numbers: usize) -> Vec<usize> {
     let nodes = functions
         .iter()
@@ -148,9 +149,9 @@ fn read(functions: &[&Function], numbers: usize) -> Vec<usize> {
     read.into_iter().collect()
 }
 
-/// Statements of a derivative, and how many numbers a packet keeps: its inputs, its outputs, and what is read in a later chunk. Each
-/// chunk is a loop over packets, whose operations do not wait for those of another, so that a CPU works on two of them at once. The
-/// sums of the numbers of a material grow from packet to packet.
+/// Returns the statements of a derivative, and the count of the numbers that a packet keeps: its inputs, its outputs, and the results
+/// that a later chunk reads. Each chunk is a loop over packets, whose operations do not wait for those of another packet, so that a CPU
+/// works on two of them at once. The sums of derivatives by the material grow from packet to packet.
 fn body(
     gradient: &Function,
     results: usize,
@@ -176,7 +177,7 @@ fn body(
     let outputs = values.iter().zip(INPUTS..);
     let outputs = outputs.chain(by_hit.iter().zip(INPUTS + RESULTS..));
     let outputs = outputs.map(|(row, place)| (*row, format!("k[{place}] = $x.store();\n")));
-    // What is done with rows: at once, or at the end with those that no operation computes.
+    // Uses of rows: at once, or at the end for rows that no operation computes.
     let uses: Vec<(u32, String)> = sums.chain(outputs).collect();
     let mut chunks = Chunks::new(graph, &rows, INPUTS + OUTPUTS);
     let mut out = String::new();
@@ -230,8 +231,8 @@ fn body(
     (out + "}\n", chunks.len())
 }
 
-/// Statements in groups. In a debugger each name is in scope from its statement on: a scope in the one before, of which compilers bear a
-/// thousand and not ten thousand.
+/// Prints the statements in groups. In a debugger, the scope of each name is nested in the scope of the name before. Compilers support a
+/// thousand nested scopes, but not ten thousand.
 fn statements(
     function: &Function,
     order: &[u32],
@@ -263,7 +264,7 @@ fn statements(
     out
 }
 
-/// The derivative of a row that is 0 where that is not finite: callers check.
+/// Returns the derivative itself for a row that replaces a derivative that is not finite by 0, because callers check it.
 fn unchecked(gradient: &Function, row: u32) -> u32 {
     let graph = gradient.graph();
     let node = graph.node(row);
@@ -281,11 +282,11 @@ fn unchecked(gradient: &Function, row: u32) -> u32 {
     row
 }
 
-/// Numbers that all lanes share, of a material and constants: operands in memory.
+/// Numbers that all lanes share, from a material or constant, which are operands in memory.
 #[derive(Default)]
 struct Slots {
     kinds: Vec<Kind>,
-    /// For one lane, where nothing is shared.
+    /// True for one lane, in which no numbers are shared.
     is_one_lane: bool,
 }
 
@@ -309,7 +310,7 @@ impl Slots {
         format!("at::<L, _>(c, {place})")
     }
 
-    /// Argument of a hit.
+    /// Returns the expression that reads an argument of a hit.
     fn argument(&self, place: usize) -> String {
         if self.is_one_lane {
             format!("v[{place}]")
@@ -328,13 +329,13 @@ impl Slots {
     }
 }
 
-/// Numbers of a material, and those of them that are read.
+/// Count of the numbers of a material, and the places of those that are read.
 struct Inputs<'a> {
     numbers: usize,
     read: &'a [usize],
 }
 
-/// An operand: a name, or a constant.
+/// Returns the expression of an operand: a name, or a constant.
 fn operand(function: &Function, place: u32, inputs: &Inputs<'_>, slots: &mut Slots) -> String {
     let graph = function.graph();
     match graph.node(place).kind {
@@ -354,7 +355,7 @@ fn operand(function: &Function, place: u32, inputs: &Inputs<'_>, slots: &mut Slo
     }
 }
 
-/// An operation, as [`hairis::simd::Lanes`] has it.
+/// Returns the expression of an operation in terms of the methods of [`hairis::simd::Lanes`].
 fn operation(function: &Function, place: u32, inputs: &Inputs<'_>, slots: &mut Slots) -> String {
     let node = function.graph().node(place);
     let Kind::Op(op) = node.kind else {
@@ -381,7 +382,7 @@ fn operation(function: &Function, place: u32, inputs: &Inputs<'_>, slots: &mut S
         Op::And => "L::and($a, $b)",
         Op::Or => "L::or($a, $b)",
         Op::Select => "L::select($a, $b, $c)",
-        // Constants are operands, powers are of targets that have them, and the rest is of samplers.
+        // Constants are operands, exponentials belong to targets that have them, and the remaining operations to samplers.
         Op::Constant(_) | Op::Exp2 | Op::Log2 | Op::AtLeast | Op::Not => {
             panic!("no line is printed for {op:?}, which no evaluation of the list has had")
         }

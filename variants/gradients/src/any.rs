@@ -1,4 +1,4 @@
-//! The handle of a model that is chosen at run time.
+//! Handle of a model that is chosen at run time.
 
 use crate::{Differentiable, GradColumns, GradError, Gradients, Weights};
 use hairis::columns::HitColumns;
@@ -8,7 +8,7 @@ use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Parameters,
 
 macro_rules! any {
     ($($(#[$doc:meta])* $variant:ident: $model:ty;)*) => {
-        /// Derivatives of a material of any model of the list: see [`Gradients`].
+        /// Derivatives of a material of any model of the list, chosen at run time: see [`Gradients`].
         #[derive(Clone, Copy, Debug)]
         #[non_exhaustive]
         pub enum AnyGradients {
@@ -16,11 +16,11 @@ macro_rules! any {
         }
 
         impl AnyGradients {
-            /// Derivatives at these values of a model's parameters.
+            /// Makes the derivatives at these values of a model's parameters.
             ///
             /// # Errors
             ///
-            /// If a value is out of its range.
+            /// Returns an error if a value is out of its range.
             ///
             /// ```
             /// use hairis_gradients::AnyGradients;
@@ -37,7 +37,7 @@ macro_rules! any {
                 })
             }
 
-            /// Names of the numbers of a material.
+            /// Returns the names of the numbers of a material, in the order of [`GradColumns::d_material`].
             #[inline]
             #[must_use]
             pub const fn material(&self) -> &'static [&'static str] {
@@ -46,7 +46,7 @@ macro_rules! any {
                 }
             }
 
-            /// Selects another instruction set.
+            /// Selects an instruction set in place of the one that was detected.
             #[inline]
             #[must_use]
             pub const fn with_level(self, level: Level) -> Self {
@@ -55,11 +55,11 @@ macro_rules! any {
                 }
             }
 
-            /// See [`Gradients::eval_grad`].
+            /// Computes S at hits and the derivatives of its weighted sum: see [`Gradients::eval_grad`].
             ///
             /// # Errors
             ///
-            /// As there.
+            /// Returns the errors of [`Gradients::eval_grad`].
             #[inline(never)]
             pub fn eval_grad(
                 &self,
@@ -73,11 +73,11 @@ macro_rules! any {
                 }
             }
 
-            /// See [`Gradients::eval_pdf_grad`].
+            /// Computes S and the density at hits and the derivatives of their weighted sum: see [`Gradients::eval_pdf_grad`].
             ///
             /// # Errors
             ///
-            /// As there.
+            /// Returns the errors of [`Gradients::eval_pdf_grad`].
             #[inline(never)]
             pub fn eval_pdf_grad(
                 &self,
@@ -91,7 +91,7 @@ macro_rules! any {
                 }
             }
 
-            /// See [`Gradients::by_parameters`].
+            /// Turns derivatives by the numbers of the material into derivatives by parameters: see [`Gradients::by_parameters`].
             #[inline(never)]
             #[must_use]
             pub fn by_parameters(&self, d_material: &[f64]) -> Values<f64> {

@@ -1,4 +1,4 @@
-//! Arguments of calls: slices of one length, which is checked.
+//! Arguments of calls: slices of one length, which every call checks.
 
 use crate::generated::{GROUP, INPUTS, OUTPUTS, RESULTS, finite_or_0};
 use core::cell::Cell;
@@ -7,17 +7,17 @@ use core::slice;
 use hairis::columns::{HitColumns, LengthError};
 use hairis::f32x8;
 
-/// Refusal of a call, which did nothing.
+/// Error of a call that was rejected before anything was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum GradError {
     /// A slice differs in length from the first.
     Length(LengthError),
-    /// Derivatives by the material have another count than its numbers.
+    /// The count of the derivatives by the material differs from that of its numbers.
     Numbers {
         /// Name of the slice at fault.
         field: &'static str,
-        /// Its length.
+        /// Length of the slice at fault.
         len: usize,
         /// Count of the numbers of the material.
         numbers: usize,
@@ -52,43 +52,44 @@ impl From<LengthError> for GradError {
     }
 }
 
-/// Weights of the results, one entry per hit: the derivative is that of the sum of `weight * result` over results and hits. Results
-/// without weights have weight 0.
+/// Weights of the results, one entry per hit. The derivatives are those of the sum of `weight * result` over all results and hits, in
+/// which results without weights have weight 0.
 ///
-/// Reverse mode of automatic differentiation calls them cotangents or adjoints: of a loss, they are its derivatives by the results.
+/// Reverse-mode automatic differentiation calls these weights cotangents or adjoints: if the sum is part of a loss, they are the
+/// derivatives of the loss by the results.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Weights<'a> {
-    /// Weights of S, red, green and blue.
+    /// Weights of S in red, green and blue.
     pub value: Option<[&'a [f32]; 3]>,
-    /// Weights of the density: [`eval_grad`](crate::Gradients::eval_grad), which computes none, ignores them.
+    /// Weights of the density. [`eval_grad`](crate::Gradients::eval_grad), which computes no density, ignores them.
     pub pdf: Option<&'a [f32]>,
 }
 
-/// Results and derivatives. Columns that are `None` are not written.
+/// Results and derivatives that a call writes, each in columns. Columns that are `None` are left out.
 #[derive(Debug, Default)]
 pub struct GradColumns<'a, 'b> {
-    /// S, red, green and blue, per steradian: one entry per hit, as the following columns.
+    /// S in red, green and blue, per steradian. This and the following columns have one entry per hit.
     pub value: Option<[&'a mut [f32]; 3]>,
     /// Density, per steradian; 0 from [`eval_grad`](crate::Gradients::eval_grad).
     pub pdf: Option<&'a mut [f32]>,
     /// Derivative by `wo`: u, v, w.
     pub d_wo: Option<[&'a mut [f32]; 3]>,
-    /// Derivative by the offset `h`: 0 outside `[-1, 1]`, and for models of the far field.
+    /// Derivative by the offset `h`, which is 0 outside `[-1, 1]` and for models of the far field.
     pub d_h: Option<&'a mut [f32]>,
     /// Derivative by `wi`: u, v, w.
     pub d_wi: Option<[&'a mut [f32]; 3]>,
     /// Derivative by each number of the material, summed over the hits: [`NUMBERS`](crate::Gradients::NUMBERS) entries, to which the call
-    /// adds. [`by_parameters`](crate::Gradients::by_parameters) makes derivatives by parameters of them.
+    /// adds. [`by_parameters`](crate::Gradients::by_parameters) turns them into derivatives by parameters.
     ///
-    /// Each of eight lanes sums 512 hits in single precision, and the sums of lanes are added in double precision, from the
-    /// first hit on: the sum depends on whether the level fuses, and on nothing else of the machine.
+    /// Each of eight lanes sums 512 hits in single precision, and the sums of the lanes are added in double precision, from the first hit
+    /// on. The sum depends on whether the level fuses, and on no other property of the machine.
     pub d_material: Option<&'a mut [f64]>,
-    /// Derivative by each number of the material per hit: as many columns, each with an entry per hit. Eight hits are a call then, which
-    /// takes longer than sums.
+    /// Derivative by each number of the material per hit: one column per number, each with one entry per hit. With these columns, packets
+    /// of eight hits are computed one at a time, which takes longer than computing sums.
     pub d_material_of_hits: Option<&'a mut [&'b mut [f32]]>,
 }
 
-/// Columns of a call in the order of the generated rows, all of one length; those that are left out are empty.
+/// Columns of a call in the order of the generated rows, all of one length. Columns that are left out are empty.
 #[derive(Debug)]
 pub(crate) struct Call<'a, 'b> {
     pub(crate) len: usize,
@@ -98,7 +99,7 @@ pub(crate) struct Call<'a, 'b> {
     each: &'a mut [&'b mut [f32]],
 }
 
-/// Names of the inputs, in order.
+/// Names of the input columns, in order.
 const INPUT_NAMES: [&str; INPUTS] = [
     "wo.u",
     "wo.v",
@@ -112,7 +113,7 @@ const INPUT_NAMES: [&str; INPUTS] = [
     "weights.value.b",
     "weights.pdf",
 ];
-/// Names of the outputs, in order.
+/// Names of the output columns, in order.
 const OUTPUT_NAMES: [&str; OUTPUTS] = [
     "value.r", "value.g", "value.b", "pdf", "d_wo.u", "d_wo.v", "d_wo.w", "d_h", "d_wi.u",
     "d_wi.v", "d_wi.w",
@@ -134,7 +135,7 @@ fn check(field: &'static str, len: usize, expected: usize) -> Result<(), LengthE
 }
 
 impl<'a, 'b> Call<'a, 'b> {
-    /// The columns, if they are of one length.
+    /// Collects the columns of a call, or returns an error if they differ in length.
     pub(crate) fn new(
         hits: HitColumns<'a>,
         wi: [&'a [f32]; 3],
@@ -175,7 +176,7 @@ impl<'a, 'b> Call<'a, 'b> {
         for column in each.iter() {
             check("d_material_of_hits[..]", column.len(), len)?;
         }
-        // By numbers that are not read.
+        // Columns by numbers that the derivatives do not read stay 0.
         each.iter_mut().for_each(|column| column.fill(0.0));
         Ok(Self {
             len,
@@ -186,13 +187,13 @@ impl<'a, 'b> Call<'a, 'b> {
         })
     }
 
-    /// Whether derivatives by the material are asked for per hit.
+    /// Returns true if derivatives by the material are requested per hit.
     pub(crate) fn has_each(&self) -> bool {
         !self.each.is_empty()
     }
 
-    /// Calls `run` with packets from hit `at` on, of which there is one, and returns their number: at most `most`, and [`GROUP`]. Fewer
-    /// than eight hits are a packet whose other lanes repeat the last hit with weights of 0.
+    /// Calls `run` with packets from hit `at` on, and returns their count: at least one, and at most `most` and [`GROUP`]. If fewer than
+    /// eight hits are left, they form a packet whose other lanes repeat the last hit with weights of 0.
     #[inline(always)]
     pub(crate) fn packets(
         &mut self,
@@ -238,8 +239,8 @@ impl<'a, 'b> Call<'a, 'b> {
         full.max(1)
     }
 
-    /// Writes derivatives of eight hits from `at` on by numbers of the material, of which each has its place. Derivatives by the hit,
-    /// which are written, become finite.
+    /// Writes the derivatives by numbers of the material of up to eight hits from `at` on, each number to the column of its place. The
+    /// derivatives by the hit, which are already written, are set to 0 where they are not finite.
     pub(crate) fn finish(&mut self, at: usize, places: &[usize], rows: &[f32x8]) {
         let eight = at..self.len.min(at + 8);
         for column in &mut self.outputs[RESULTS..] {

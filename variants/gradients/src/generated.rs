@@ -1,4 +1,4 @@
-//! Generated derivatives, and which model has which.
+//! Generated derivatives, and the models that have them.
 
 use crate::columns::Call;
 use core::cell::Cell;
@@ -12,36 +12,37 @@ use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Registered}
 pub(crate) const RESULTS: usize = 4;
 /// Numbers of a hit and a direction: `wo`, `h`, `wi`.
 pub(crate) const ARGUMENTS: usize = 7;
-/// Numbers that each hit reads: these, and a weight per result.
+/// Numbers that are read for each hit: the arguments, and a weight per result.
 pub(crate) const INPUTS: usize = ARGUMENTS + RESULTS;
 
-/// Numbers of a hit that are written: the results, and a derivative per argument.
+/// Numbers that are written for each hit: the results, and a derivative per argument.
 pub(crate) const OUTPUTS: usize = RESULTS + ARGUMENTS;
 
 /// Packets whose derivatives are summed in single precision.
 const BLOCK: usize = 64;
-/// Packets of a call of a dispatched function.
+/// Packets of one call of a dispatched function.
 pub(crate) const GROUP: usize = 16;
-/// Packets that take turns: each chunk of operations runs over them before the next does. What they keep in between should stay in the
-/// second level of cache.
+/// Packets that take turns: each chunk of operations runs over all of them before the next chunk does. The numbers that they keep in
+/// between should stay in the second level of cache.
 const TURNS: usize = 4;
 
-/// A number that all lanes share.
+/// Number that all lanes share.
 #[derive(Clone, Copy, Debug)]
 enum Slot {
-    /// A number of a material, by its place.
+    /// A number of a material, given by its place.
     Number(usize),
     /// The bits of a constant.
     Constant(u32),
 }
 
-/// Derivatives that read `S` shared numbers, have a sum for each of `N` numbers of a material, and keep `K` numbers of a packet, of which
-/// its inputs and its outputs are the first.
+/// Derivatives that read `S` shared numbers, and have a sum for each of `N` numbers of a material. They keep `K` numbers of a packet, of
+/// which the inputs and the outputs come first.
 trait Rows<const S: usize, const N: usize, const K: usize> {
-    /// The shared numbers: in memory, where instructions read them. Compilers would load constants into registers, one at a time.
+    /// Shared numbers. They are kept in memory, where instructions read them, because compilers would load constants into registers one
+    /// at a time.
     const SLOTS: &'static [Slot; S];
-    /// Results and derivatives by the hit, from the inputs of each packet. Derivatives by the material are added to `sums`, and `finite`
-    /// stays finite if all derivatives by the hit are.
+    /// Computes the results and the derivatives by the hit from the inputs of each packet. Derivatives by the material are added to
+    /// `sums`, and `finite` stays finite if all derivatives by the hit are finite.
     fn rows<L: Lanes<Stored = f32x8>>(
         shared: &[f32x8; S],
         packets: &mut [[f32x8; K]],
@@ -69,19 +70,19 @@ mod models {
     hairis_variants::for_each_model! { sources }
 }
 
-/// A kept number. Checking a call takes compilers less time than an index and a reference, of which there are ten thousand.
+/// Loads a kept number. Compilers check a call faster than an index and a reference, of which there are ten thousand.
 #[inline(always)]
 fn at<L: Lanes<Stored = f32x8>, const K: usize>(kept: &[f32x8; K], place: usize) -> L {
     L::load(&kept[place])
 }
 
-/// Numbers with the lower 12 bits cleared. Asked for by lanes that do not fuse.
+/// Clears the lower 12 bits of the numbers. Lanes that do not fuse need this operation.
 #[inline(always)]
 fn upper<L: Lanes<Stored: Upper>>(x: L) -> L {
     L::load(&x.store().upper())
 }
 
-/// Stored lanes whose bits are taken apart.
+/// Stored lanes whose bits can be taken apart.
 trait Upper {
     fn upper(self) -> Self;
 }
@@ -100,7 +101,7 @@ impl Upper for f32 {
     }
 }
 
-/// Full packets of hits.
+/// Kernel that computes derivatives for full packets of hits.
 struct Hits<'c, G, const S: usize, const N: usize, const K: usize> {
     shared: &'c [f32x8; S],
     /// Room for packets that take turns.
@@ -147,12 +148,13 @@ impl<G: Rows<S, N, K>, const S: usize, const N: usize, const K: usize> Kernel
     }
 }
 
-/// A model of the list, with its derivatives. Sealed.
+/// Model of the list that has generated derivatives. Sealed.
 pub trait Differentiable: Registered + sealed::Sealed {
     /// Names of the numbers of a material, as fields of [`Model::Material`](hairis::model::Model::Material): `beta[1]`.
     const MATERIAL: &'static [&'static str];
 
-    /// Derivatives by the numbers of the parameters, in the order of their fields, of the weighted sum of a material's numbers.
+    /// Computes the derivatives of the weighted sum of a material's numbers by the numbers of the parameters, in the order of their
+    /// fields.
     #[doc(hidden)]
     fn by_parameters(
         params: impl IntoIterator<Item = f32>,
@@ -171,15 +173,15 @@ pub trait Differentiable: Registered + sealed::Sealed {
 pub(crate) mod sealed {
     use crate::columns::Call;
 
-    /// Keeps the models in the list.
+    /// Seals [`Differentiable`](super::Differentiable) to the models of the list.
     pub trait Sealed {}
 
-    /// The columns of a call.
+    /// Columns of a call, in a type that other crates cannot make.
     #[derive(Debug)]
     pub struct Rows<'c, 'a, 'b>(pub(crate) &'c mut Call<'a, 'b>);
 }
 
-/// Runs the derivatives `G`, which have sums for the numbers at these places of all numbers of a material.
+/// Runs the derivatives `G`, whose sums belong to the numbers at these places among all numbers of a material.
 #[inline]
 fn run<G: Rows<S, N, K>, const S: usize, const N: usize, const K: usize>(
     call: &mut Call<'_, '_>,
@@ -195,7 +197,7 @@ fn run<G: Rows<S, N, K>, const S: usize, const N: usize, const K: usize>(
     }
 }
 
-/// Room for that many packets on the stack, of which each function has its own.
+/// Provides room for `PACKETS` packets on the stack. Each size is a function with a stack frame of its own.
 #[inline(never)]
 fn with_room<
     G: Rows<S, N, K>,
@@ -212,7 +214,7 @@ fn with_room<
     run_in::<G, S, N, K>(&mut [[f32x8::ZERO; K]; PACKETS], call, all, places, level);
 }
 
-/// Runs the derivatives with this room. Compiled once per program.
+/// Runs the derivatives in this room. Compiled once per program.
 #[inline(never)]
 fn run_in<G: Rows<S, N, K>, const S: usize, const N: usize, const K: usize>(
     kept: &mut [[f32x8; K]],
@@ -230,7 +232,7 @@ fn run_in<G: Rows<S, N, K>, const S: usize, const N: usize, const K: usize>(
     let mut sums = [f32x8::ZERO; N];
     let (mut at, mut alone_until) = (0, if call.has_each() { call.len } else { 0 });
     while at < call.len {
-        // Derivatives that are not finite count as 0. Few are: packets whose sums are not are computed again, each alone.
+        // Derivatives that are not finite count as 0. They are rare: packets whose sums are not finite are computed again, each alone.
         let is_alone = at < alone_until;
         let mut rows = if is_alone {
             // Adding to -0 changes no bit.
@@ -285,23 +287,23 @@ fn is_finite(lanes: &f32x8) -> bool {
     lanes.to_array().into_iter().all(f32::is_finite)
 }
 
-/// A derivative, or 0 where that is not finite.
+/// Returns a derivative, or 0 if it is not finite.
 pub(crate) fn finite_or_0(x: f32) -> f32 {
     if x.is_finite() { x } else { 0.0 }
 }
 
-/// Work on a model of the list as a type with derivatives: see [`visit`].
+/// Operation on a model of the list whose type has derivatives, which [`visit`] calls with that type.
 pub trait Visitor {
-    /// Result of the work.
+    /// Result of the operation.
     type Output;
 
-    /// Does the work on the model `M`.
+    /// Performs the operation on the model `M`.
     fn visit<M: Differentiable>(self) -> Self::Output;
 }
 
 macro_rules! differentiable {
     ($($(#[$doc:meta])* $variant:ident: $model:ty;)*) => {
-        /// Calls `visitor` with the model's type, as [`ModelId::visit`] does.
+        /// Calls `visitor` with the type of the model `id`, as [`ModelId::visit`] does.
         #[inline]
         pub fn visit<V: Visitor>(id: ModelId, visitor: V) -> V::Output {
             match id {

@@ -1,4 +1,4 @@
-//! The handle of a material.
+//! Handle of a material whose model is known at compile time.
 
 use crate::columns::Call;
 use crate::generated::{Differentiable, sealed};
@@ -7,7 +7,7 @@ use core::fmt;
 use hairis::columns::HitColumns;
 use hairis::simd::Level;
 
-/// Derivatives of a material: made once per material, and called with slices of hits.
+/// Derivatives of a material: a handle that is made once per material, and called with slices of hits.
 pub struct Gradients<M: Differentiable> {
     pub(crate) params: M::Params,
     pub(crate) material: M::Material<f32>,
@@ -33,10 +33,10 @@ impl<M: Differentiable> fmt::Debug for Gradients<M> {
 }
 
 impl<M: Differentiable> Gradients<M> {
-    /// Count of the numbers of a material.
+    /// Count of the numbers of a material, and thus of the derivatives by the material.
     pub const NUMBERS: usize = M::MATERIAL.len();
 
-    /// Derivatives at these parameters, on the best instruction set of the CPU.
+    /// Makes the derivatives at these parameters, on the best instruction set of the CPU.
     #[inline]
     #[must_use]
     pub fn new(params: &M::Params) -> Self {
@@ -47,21 +47,22 @@ impl<M: Differentiable> Gradients<M> {
         }
     }
 
-    /// Selects another instruction set.
+    /// Selects an instruction set in place of the one that was detected.
     #[inline]
     #[must_use]
     pub const fn with_level(self, level: Level) -> Self {
         Self { level, ..self }
     }
 
-    /// S of many directions, each at a hit of its own, and the derivatives of its weighted sum.
+    /// Computes S of many directions, each at a hit of its own, and the derivatives of its weighted sum.
     ///
     /// S has the bits of [`Material::eval_hits`](hairis::Material::eval_hits). The crate documents the
     /// [rules](crate#rules-where-a-model-is-not-smooth) where a model is not smooth.
     ///
     /// # Errors
     ///
-    /// If the columns differ in length, or those of the material are not as many as its numbers; nothing is written then.
+    /// Returns an error if the columns differ in length, or if the count of the derivatives by the material differs from that of its
+    /// numbers. Nothing is written then.
     #[inline]
     pub fn eval_grad(
         &self,
@@ -73,12 +74,12 @@ impl<M: Differentiable> Gradients<M> {
         self.run::<false>(hits, wi, weights, out)
     }
 
-    /// As [`eval_grad`](Self::eval_grad), with the density and its derivatives: for [`Matched`](hairis::Matched) in a
-    /// multiple of the time.
+    /// Computes S and the density, and the derivatives of their weighted sum. Otherwise like [`eval_grad`](Self::eval_grad), but for
+    /// [`Matched`](hairis::Matched) several times slower.
     ///
     /// # Errors
     ///
-    /// As there.
+    /// Returns the errors of [`eval_grad`](Self::eval_grad).
     #[inline]
     pub fn eval_pdf_grad(
         &self,

@@ -1,9 +1,9 @@
 //! Derivatives of the models of hairis at slices of hits: by the parameters of the material, by both directions and by the offset.
 //!
-//! [`Gradients`] is the handle of a material. [`eval_grad`](Gradients::eval_grad) takes a weight per result of each hit, and returns
-//! the derivative of the weighted sum of all results. The reverse pass is generated when this package is built: each model is traced
-//! to a graph ([`hairis-shaders`](https://docs.rs/hairis-shaders)), differentiated, and printed as Rust over lanes. The lanes have
-//! the bits of that graph's interpreter, on every level.
+//! [`Gradients`] is the handle of a material. Its method [`eval_grad`](Gradients::eval_grad) takes one weight per result of each hit, and
+//! returns the derivative of the weighted sum of all results. The reverse pass is generated when this package is built: each model is
+//! traced to a graph ([`hairis-shaders`](https://docs.rs/hairis-shaders)), differentiated, and printed as Rust over lanes. On every
+//! level, the lanes have the bits of that graph's interpreter.
 //!
 //! ```
 //! use hairis::columns::HitColumns;
@@ -23,8 +23,8 @@
 //! # Ok::<(), hairis_gradients::GradError>(())
 //! ```
 //!
-//! A call keeps numbers of four packets on the stack: at most 78 kB, but for the density of `Matched` 113 kB, and 253 kB with 25 bands.
-//! In threads with a small stack, pass eight hits at a time: they take a quarter of it.
+//! A call keeps the numbers of four packets on the stack. They take at most 78 kB, except for the density of `Matched`, for which they
+//! take 113 kB, and 253 kB with 25 bands. In threads with a small stack, pass eight hits at a time, which take a quarter of that.
 //!
 //! # Rules where a model is not smooth
 //!
@@ -41,9 +41,9 @@
 //! | directions along the fibre, non-finite inputs | 0, as the value |
 //! | any other derivative that is infinite or undefined | 0 |
 //!
-//! Directions count as independent coordinates. Those of unit length, within 1e-5, are not normalised: the derivative is right along the
-//! sphere and arbitrary across it, so project it: `d - wi * dot(d, wi)`. The density is that of the model's sampler;
-//! a discarded sample has no derivative, as no sample is drawn here (detached sampling).
+//! Directions count as independent coordinates. If their length is within 1e-5 of one, they are not normalised, so that the derivative is
+//! right along the sphere and arbitrary across it. Project it: `d - wi * dot(d, wi)`. The density is that of the model's sampler. A
+//! discarded sample has no derivative, because no sample is drawn here (detached sampling).
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
 

@@ -1,14 +1,15 @@
-//! Derivatives by parameters, from those by the numbers of a material.
+//! Derivatives by parameters, computed from the derivatives by the numbers of a material.
 
 use crate::Gradients;
 use crate::generated::Differentiable;
 use hairis_variants::{Kind, Parameters, Values};
 
 impl<M: Differentiable> Gradients<M> {
-    /// Derivatives by parameters: one per number of each field that the parameters keep, 0 for words.
+    /// Turns derivatives by the numbers of the material into derivatives by parameters: one per number of each field that the parameters
+    /// keep, and 0 for words.
     ///
     /// - `d_material`: derivatives by the numbers of the material, as [`GradColumns::d_material`](crate::GradColumns::d_material) sums
-    ///   them; missing entries are 0, and entries beyond [`NUMBERS`](Self::NUMBERS) are ignored.
+    ///   them. Missing entries are 0, and entries beyond [`NUMBERS`](Self::NUMBERS) are ignored.
     /// - Accuracy: that of single precision, as for the other derivatives. On the edge of a parameter's range, where the model is cut
     ///   off, they are one-sided. The test `derivatives_are_those_of_the_formulas` states the errors.
     #[inline(never)]
@@ -20,7 +21,7 @@ impl<M: Differentiable> Gradients<M> {
     pub fn by_parameters(&self, d_material: &[f64]) -> Values<f64> {
         let (values, fields) = (self.params.values(), M::Params::FIELDS);
         let kept = || (0..fields.len()).filter(|index| values.has_at(*index));
-        // Sums over many hits may be beyond single precision.
+        // Sums over many hits may exceed the range of single precision, so they are scaled.
         let largest = d_material.iter().fold(0.0, |a: f64, d| a.max(d.abs()));
         let scale = if largest > 0.0 { largest } else { 1.0 };
         let mut found = M::by_parameters(

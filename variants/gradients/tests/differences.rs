@@ -1,4 +1,4 @@
-//! Derivatives against central differences of the formulas in double precision, which share no code with the kernels.
+//! Tests of derivatives against central differences of the formulas in double precision, which share no code with the kernels.
 
 use crate::support::{Hits, Random, call, quantiles};
 use hairis::simd::Level;
@@ -15,7 +15,7 @@ struct Point {
     wi: [f64; 3],
 }
 
-/// A weighted sum of results of the formulas.
+/// Weighted sum of the results of the formulas.
 struct Loss<'a> {
     model: ModelId,
     values: &'a Values,
@@ -30,7 +30,7 @@ impl Loss<'_> {
         results.map(|(x, weight)| x * f64::from(weight)).sum()
     }
 
-    /// Derivative by a step along `moved`, unless the loss is not smooth there.
+    /// Returns the derivative by a step along `moved`, or `None` if the loss is not smooth there.
     fn difference(&self, moved: &dyn Fn(f64) -> Point, step: f64) -> Option<f64> {
         let slope = |step: f64| {
             let [low, high] = [-step, step].map(|by| self.at(&moved(by)));
@@ -42,7 +42,7 @@ impl Loss<'_> {
         is_smooth.then_some(better)
     }
 
-    /// Size of the loss per step of the argument's own size.
+    /// Returns the size of the loss divided by that of the argument, which is ten thousand steps.
     fn scale(&self, moved: &dyn Fn(f64) -> Point, step: f64) -> f64 {
         self.at(&moved(0.0)).abs() * 1e-4 / step
     }
@@ -61,7 +61,7 @@ fn along(x: [f64; 3], tangent: [f64; 3], by: f64) -> [f64; 3] {
     unit(core::array::from_fn(|k| x[k] + by * tangent[k]))
 }
 
-/// Errors of a model's derivatives, relative to their size or a thousandth of the loss.
+/// Returns the errors of a model's derivatives by hits and by parameters, relative to their size or to a thousandth of the loss.
 fn errors(model: ModelId, level: Level) -> [Vec<f64>; 2] {
     let mut random = Random(73);
     let [mut by_hit, mut by_parameter] = [Vec::new(), Vec::new()];

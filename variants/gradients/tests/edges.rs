@@ -1,4 +1,4 @@
-//! Edges: finite derivatives wherever hosts may evaluate.
+//! Tests that derivatives are finite wherever hosts may evaluate.
 
 use crate::support::{Hits, Random, call};
 use hairis::simd::Level;
@@ -10,7 +10,7 @@ fn derivatives_are_finite_at_the_edges() {
     for id in ModelId::ALL {
         let mut random = Random(72);
         for material in 0..24 {
-            // Narrow lobes, of the smallest widths as well.
+            // Half of the materials have narrow lobes, and half of these the narrowest.
             let mut values = random.values(*id, material % 2 == 1);
             if material % 4 == 3 {
                 for field in id.fields().iter().filter(|field| field.narrow.is_some()) {
@@ -24,7 +24,7 @@ fn derivatives_are_finite_at_the_edges() {
             let mut hits = Hits::default();
             for _ in 0..203 {
                 let (wo, mut wi) = (random.edge(), random.edge());
-                // Peaks: the mirror direction, the view, and straight through.
+                // Half of the directions are peaks: the mirror direction, the view, and straight through.
                 let [u, v, w] = wo;
                 match random.bits() % 6 {
                     0 => wi = [-u, v, w],

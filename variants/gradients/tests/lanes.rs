@@ -1,4 +1,4 @@
-//! Lanes against the interpreter of graphs, to the bit.
+//! Tests of lanes against the interpreter of graphs, bit by bit.
 
 use crate::support::{Hits, Random, call};
 use hairis::simd::Level;
@@ -6,7 +6,7 @@ use hairis_gradients::AnyGradients;
 use hairis_shaders::{Call, Function, Program, Rounding, Target, numbers};
 use hairis_variants::{ModelId, Parameters, Registered, Visitor};
 
-/// Hits per material: more than a block of sums, and no multiple of eight.
+/// Hits per material: more than a block of sums, and not a multiple of eight.
 const HITS: usize = 523;
 
 fn hits(random: &mut Random) -> Hits {

@@ -1,4 +1,4 @@
-//! Tests: lanes against the interpreter of graphs, and against differences in double precision, of the graphs and of the formulas.
+//! Tests that compare lanes with the interpreter of graphs, and with differences in double precision, of the graphs and of the formulas.
 
 mod differences;
 mod edges;

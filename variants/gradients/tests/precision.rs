@@ -1,4 +1,4 @@
-//! Derivatives against central differences of the same function in double precision: their own error, without that of the values.
+//! Tests of derivatives against central differences of the same function in double precision, without the error of the values.
 
 use crate::support::{Hits, Random, call, quantiles};
 use hairis::simd::Level;
@@ -6,7 +6,7 @@ use hairis_gradients::AnyGradients;
 use hairis_shaders::{Call, Function, Program, Target, numbers, parameters};
 use hairis_variants::{Kind, ModelId, Parameters, Registered, Visitor};
 
-/// A weighted sum of the results of a function, and its size.
+/// Weighted sum of the results of a function, and its size.
 struct Loss<'a> {
     function: &'a Function,
     inputs: Vec<f64>,
@@ -27,7 +27,7 @@ impl<'a> Loss<'a> {
         }
     }
 
-    /// Derivative to the input at `place`, where no choice changes within a step.
+    /// Returns the derivative by the input at `place`, or `None` if a choice changes within a step.
     fn difference(&self, place: usize) -> Option<f64> {
         let step = 1e-6 * self.inputs[place].abs().max(0.03);
         let at = |by: f64| {
@@ -41,8 +41,8 @@ impl<'a> Loss<'a> {
         (before == after).then_some((high - low) / (2.0 * step))
     }
 
-    /// Errors of the derivatives to the inputs from `first` on, relative to their size. A thousandth of the loss for a change of the
-    /// whole argument counts as nothing.
+    /// Returns the errors of the derivatives by the inputs from `first` on, relative to their size, or to a thousandth of the loss for a
+    /// change of the whole argument if that is larger.
     fn errors(&self, first: usize, got: impl IntoIterator<Item = f64>) -> Vec<f64> {
         let errors = got.into_iter().zip(first..).filter_map(|(got, place)| {
             let expected = self.difference(place)?;
@@ -70,7 +70,7 @@ impl Visitor for Precision {
             Target::Exact
         };
         let program = Program::of::<M>(target);
-        // The list's parameters are constants of one lane on every level.
+        // Material constants are computed from parameters in one lane on every level.
         let one_lane = Program::of::<M>(Target::Exact);
         let (eval, of_parameters) = (
             program.function(Call::EvalHit),

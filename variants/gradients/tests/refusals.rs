@@ -1,4 +1,4 @@
-//! Refusals: nothing is written, and the column is named.
+//! Tests that rejected calls write nothing, and name the column at fault.
 
 use hairis::columns::HitColumns;
 use hairis::{Gaussian, HairParams, Published};
@@ -6,12 +6,12 @@ use hairis_gradients::{AnyGradients, GradColumns, GradError, Gradients, Weights}
 
 type Hair = Gradients<Published<Gaussian>>;
 
-/// Compiled in the library, and not here once more.
+/// Returns a handle that is compiled in the library, and not once more in this test.
 fn hair() -> AnyGradients {
     AnyGradients::Gaussian(Hair::new(&HairParams::brown()))
 }
 
-/// The refusal of a call on three hits whose columns are three long, but for those that `change` replaces.
+/// Returns the error of a call on three hits, whose columns have three entries except for those that `change` replaces.
 fn refusal(
     change: fn(
         &mut HitColumns<'static>,

@@ -1,11 +1,11 @@
-//! Materials, hits and calls.
+//! Materials, hits and calls for the tests.
 
 use hairis::columns::HitColumns;
 use hairis::simd::Level;
 use hairis_gradients::{AnyGradients, GradColumns, Weights};
 use hairis_variants::{Kind, ModelId, Values};
 
-/// The generator `SplitMix64`.
+/// Generator of random numbers, `SplitMix64`.
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
@@ -32,7 +32,7 @@ impl Random {
         [u, cos * phi.cos(), cos * phi.sin()]
     }
 
-    /// A unit direction: at random, along or across an axis, or grazing.
+    /// Draws a unit direction: at random, along or across an axis, or grazing.
     pub(crate) fn edge(&mut self) -> [f32; 3] {
         let [_, y, z] = self.sphere();
         match self.bits() % 8 {
@@ -49,7 +49,7 @@ impl Random {
         }
     }
 
-    /// Values of random parameters of a model; all lobes narrow, if told.
+    /// Draws the values of random parameters of a model, with narrow lobes if `is_narrow`.
     pub(crate) fn values(&mut self, model: ModelId, is_narrow: bool) -> Values {
         loop {
             let mut values = model.defaults();
@@ -86,7 +86,7 @@ impl Random {
     }
 }
 
-/// Hits with a direction and weights each.
+/// Hits, each with a direction and weights.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hits {
     pub(crate) wo: [Vec<f32>; 3],
@@ -107,7 +107,7 @@ impl Hits {
         }
     }
 
-    /// One hit with its weights: two directions of the whole sphere, and an offset away from the edges.
+    /// Draws one hit with its weights: two directions of the whole sphere, and an offset away from the edges.
     pub(crate) fn one(random: &mut Random) -> Self {
         let (wo, h, wi) = (random.sphere(), random.range(-0.95, 0.95), random.sphere());
         let weights = [(); 4].map(|()| random.range(-1.0, 1.0));
@@ -120,7 +120,7 @@ impl Hits {
         self.h.len()
     }
 
-    /// Numbers of a hit: `wo`, `h`, `wi` and the weights.
+    /// Returns the numbers of a hit: `wo`, `h`, `wi` and the weights.
     pub(crate) fn numbers(&self, hit: usize) -> Vec<f32> {
         let columns = self.wo.iter().chain([&self.h]).chain(&self.wi);
         let columns = columns.chain(&self.weights);
@@ -139,7 +139,7 @@ pub(crate) fn slices<const N: usize>(columns: &[Vec<f32>; N]) -> [&[f32]; N] {
     columns.each_ref().map(|column| &column[..])
 }
 
-/// Results of a call.
+/// Results of a call, collected from all of its columns.
 #[derive(Debug)]
 pub(crate) struct Found {
     /// Rows per hit: results, derivatives by the material, derivatives by the hit.
@@ -148,7 +148,7 @@ pub(crate) struct Found {
     pub(crate) parameters: Values<f64>,
 }
 
-/// Calls with all columns; without the density, if told.
+/// Calls the derivatives with all columns, and without the density unless `has_pdf`.
 pub(crate) fn call(gradients: &AnyGradients, hits: &Hits, level: Level, has_pdf: bool) -> Found {
     let (len, numbers) = (hits.len(), gradients.material().len());
     let mut columns = vec![vec![f32::NAN; len]; numbers + 11];
@@ -194,7 +194,7 @@ pub(crate) fn call(gradients: &AnyGradients, hits: &Hits, level: Level, has_pdf:
     }
 }
 
-/// Median, and the 999th of a thousand.
+/// Returns the median, and the 999th of a thousand.
 pub(crate) fn quantiles(errors: &mut [f64]) -> [f64; 2] {
     errors.sort_by(f64::total_cmp);
     [

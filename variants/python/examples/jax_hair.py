@@ -1,6 +1,6 @@
-"""Hair as a function that JAX differentiates: recovers the widths of lobes from values. jax_hair.py
+"""Hair as a function that JAX differentiates, which recovers the widths of lobes from values. jax_hair.py
 
-`scatter` is a `custom_vjp` over the wheel's calls on columns, so that a loss of it has gradients by every field and direction.
+`scatter` is a `custom_vjp` over the wheel's calls on columns, so that a loss of its values has gradients by every field and direction.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def material(model: str, fields: Fields) -> hairis.Material:
 
 @partial(jax.custom_vjp, nondiff_argnums=(0,))
 def scatter(model: str, fields: Fields, wo: jax.Array, wi: jax.Array) -> jax.Array:
-    """Return S of N directions, each at a hit of its own, as an array of shape (3, N)."""
+    """Returns S of N directions, each at a hit of its own, as an array of shape (3, N)."""
 
     def call(fields: Fields, wo: Any, wi: Any) -> Any:
         return material(model, fields).eval_hits(np.asarray(wo), np.asarray(wi))["value"]

@@ -1,4 +1,4 @@
-"""Hair scattering for renderers and notebooks: many directions at a time, NumPy in and out.
+"""Hair scattering for renderers and notebooks: many directions at a time, with NumPy arrays in and out.
 
 >>> hair = hairis.Material("gaussian", "brown", sampler="matched")
 >>> bsdf = hair.prepare(wo=(0.6, 0.0, 0.8))
@@ -6,9 +6,9 @@
 >>> samples["weight"].shape
 (3, 1000)
 
-Directions point away from the fibre, in its frame: u along it from root to tip, v and w across. `wo` is towards the viewer, `wi`
-towards the light. Columns are float32 of shape (3, N) or (N,), C-contiguous and aligned; nothing is converted. Calls release the
-interpreter's lock: threads are the caller's.
+Directions point away from the fibre, in its frame: u runs along the fibre from root to tip, and v and w lie across it. `wo` points
+towards the viewer and `wi` towards the light. Columns are float32 of shape (3, N) or (N,), C-contiguous and aligned; nothing is
+converted. Calls release the interpreter's lock, so that the caller may run them in threads of its own.
 """
 
 from ._hairis import Bsdf, Material, level, models

@@ -1,4 +1,4 @@
-"""Calls that pickle refers to."""
+"""Functions that pickled objects refer to."""
 
 from __future__ import annotations
 
@@ -8,6 +8,6 @@ from ._hairis import Bsdf, Material
 
 
 def bsdf(material: Material, wo: Sequence[float], h: float, lobes: Sequence[str] | None) -> Bsdf:
-    """Return the BSDF of a material at a hit, with some lobes alone if they are given."""
+    """Returns the BSDF of a material at a hit, restricted to some lobes if they are given."""
     whole = material.prepare(wo, h)
     return whole if lobes is None else whole.with_lobes(lobes)

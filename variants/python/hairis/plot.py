@@ -1,4 +1,4 @@
-"""Plots of lobes with matplotlib: `pip install hairis[plot]`.
+"""Plots of lobes with matplotlib, which `pip install hairis[plot]` installs.
 
 >>> import matplotlib; matplotlib.use("agg")
 >>> import hairis.plot
@@ -23,7 +23,7 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
 def _directions(theta: NDArray[Any], phi: NDArray[Any]) -> NDArray[np.float32]:
-    """Return unit vectors of shape (3, N) in the fibre's frame."""
+    """Returns unit vectors of shape (3, N) in the fibre's frame."""
     cos = np.cos(theta)
     columns = np.stack([np.sin(theta), cos * np.cos(phi), cos * np.sin(phi)]).reshape(3, -1)
     return np.ascontiguousarray(columns, np.float32)
@@ -39,23 +39,24 @@ def _axes(axes: Axes | None, **arguments: Any) -> Axes:
 
 
 def polar(bsdf: Bsdf, theta: float | None = None, *, count: int = 1024, axes: Axes | None = None) -> Axes:
-    """Draw each lobe and their sum as a polar plot over the azimuth of `wi`, on a logarithmic scale.
+    """Draws each lobe and their sum as a polar plot over the azimuth of `wi`, on a logarithmic scale.
 
     Parameters
     ----------
     bsdf : Bsdf
-        A material at a hit.
+        Material at a hit.
     theta : float, optional
-        Inclination of `wi`, rad, in (-pi/2, pi/2); without it, the one at which the BSDF is largest.
+        Inclination of `wi` in radians, in (-pi/2, pi/2). Without it, the inclination at which S times the cosine is largest.
     count : int
         Number of azimuths.
     axes : matplotlib Axes, optional
-        Polar axes to draw in; new ones without it.
+        Polar axes to draw in; without it, new axes are made.
 
     Returns
     -------
     matplotlib Axes
-        The radius is the luminance of S times the cosine, per steradian, over four decades; the angle is the azimuth of `wi`, rad.
+        The radius is the luminance of S times the cosine, per steradian, over four decades. The angle is the azimuth of `wi`, in
+        radians.
     """
     axes = _axes(axes, projection="polar")
     phi = np.linspace(-np.pi, np.pi, count)
@@ -80,21 +81,21 @@ def polar(bsdf: Bsdf, theta: float | None = None, *, count: int = 1024, axes: Ax
 
 
 def sphere(bsdf: Bsdf, *, resolution: int = 256, axes: Axes | None = None) -> Axes:
-    """Draw the BSDF as a map over the sphere: azimuth across, inclination up, on a logarithmic scale.
+    """Draws the BSDF as a map over the sphere on a logarithmic scale, with the azimuth across and the inclination up.
 
     Parameters
     ----------
     bsdf : Bsdf
-        A material at a hit.
+        Material at a hit.
     resolution : int
-        Rows of the map; it has twice as many columns.
+        Number of rows of the map, which has twice as many columns.
     axes : matplotlib Axes, optional
-        Axes to draw in; new ones without it.
+        Axes to draw in; without it, new axes are made.
 
     Returns
     -------
     matplotlib Axes
-        The colour is log10 of the luminance of S, per steradian, over six decades; angles are degrees.
+        The colour is log10 of the luminance of S, per steradian, over six decades. Angles are in degrees.
     """
     axes = _axes(axes)
     theta = (np.arange(resolution) + 0.5) / resolution * np.pi - np.pi / 2

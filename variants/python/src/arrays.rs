@@ -1,4 +1,4 @@
-//! Columns of NumPy: borrowed, never copied.
+//! Columns of NumPy arrays, which are borrowed and never copied.
 
 use hairis_capi::layout::{Evals, Samples};
 use numpy::{
@@ -9,9 +9,9 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Columns of an evaluation: names, and rows of each.
+/// Columns of an evaluation, with the number of rows of each.
 pub(crate) const EVALS: [(&str, usize); 2] = [("value", 3), ("pdf", 1)];
-/// Columns of samples.
+/// Columns of samples, with the number of rows of each.
 pub(crate) const SAMPLES: [(&str, usize); 5] = [
     ("wi", 3),
     ("value", 3),
@@ -29,7 +29,7 @@ fn shape(rows: usize, n: Option<usize>) -> String {
     }
 }
 
-/// The columns of an evaluation as C has them.
+/// Converts the columns of an evaluation to the struct of the C interface.
 pub(crate) fn evals(outputs: &Outputs<'_>) -> Evals {
     let [value, [pdf, ..]] = outputs.rows[..] else {
         unreachable!("two columns")
@@ -37,7 +37,7 @@ pub(crate) fn evals(outputs: &Outputs<'_>) -> Evals {
     Evals { value, pdf }
 }
 
-/// The columns of samples as C has them.
+/// Converts the columns of samples to the struct of the C interface.
 pub(crate) fn samples(outputs: &Outputs<'_>) -> Samples {
     let [wi, value, pdf, weight, lobe] = outputs.rows[..] else {
         unreachable!("five columns")
@@ -51,7 +51,7 @@ pub(crate) fn samples(outputs: &Outputs<'_>) -> Samples {
     }
 }
 
-/// The exception of an array that is not what it must be.
+/// Makes the exception for an array of another type, shape or layout than required.
 fn refused(name: &str, rows: usize, n: Option<usize>, got: &Bound<'_, PyAny>) -> PyErr {
     let flag = |name| -> PyResult<bool> { got.getattr("flags")?.getattr(name)?.extract() };
     let what = match (
@@ -76,7 +76,7 @@ fn refused(name: &str, rows: usize, n: Option<usize>, got: &Bound<'_, PyAny>) ->
     ))
 }
 
-/// The array, if it is one of float32 with this shape, C-contiguous and aligned.
+/// Returns the array if it is float32 of this shape, C-contiguous and aligned, and an exception otherwise.
 fn cast<'a, 'py>(
     name: &str,
     rows: usize,
@@ -99,19 +99,19 @@ fn cast<'a, 'py>(
     }
 }
 
-/// The address of each row of a column.
+/// Returns the address of each row of a column.
 fn rows_of(start: *const f32, n: usize) -> [*const f32; 3] {
     [start, start.wrapping_add(n), start.wrapping_add(2 * n)]
 }
 
-/// A column that a call reads.
+/// Column that a call reads.
 pub(crate) struct Input<'py> {
     array: PyReadonlyArrayDyn<'py, f32>,
     pub(crate) n: usize,
 }
 
 impl<'py> Input<'py> {
-    /// The column of `rows` rows; of `n` numbers each, if that is known.
+    /// Borrows a column of `rows` rows, which must have `n` numbers each if `n` is known.
     pub(crate) fn new(
         name: &str,
         any: &Bound<'py, PyAny>,
@@ -130,7 +130,7 @@ impl<'py> Input<'py> {
         rows_of(self.array.data().cast_const(), self.n)
     }
 
-    /// The rows; of a column of one row, that and two empty ones.
+    /// Returns the rows; a column of one row gives that row and two empty ones.
     pub(crate) fn slices(&self) -> [&[f32]; 3] {
         let Ok(all) = self.array.as_slice() else {
             unreachable!("contiguous and aligned")
@@ -143,18 +143,18 @@ impl<'py> Input<'py> {
     }
 }
 
-/// The columns that a call writes.
+/// Columns that a call writes.
 pub(crate) struct Outputs<'py> {
     /// Columns by name, for the caller.
     pub(crate) dict: Bound<'py, PyDict>,
-    /// Held so that nothing else reads or writes them.
+    /// Borrows that are held so that nothing else reads or writes the columns.
     _borrowed: Vec<PyReadwriteArrayDyn<'py, f32>>,
-    /// The rows of each column, null where it is left out.
+    /// Rows of each column, null if the column is left out.
     pub(crate) rows: Vec<[*mut f32; 3]>,
 }
 
 impl<'py> Outputs<'py> {
-    /// New columns of every name, or those of `out`.
+    /// Makes new columns of every name, or borrows the columns of `out`.
     pub(crate) fn new(
         py: Python<'py>,
         out: Option<&Bound<'py, PyDict>>,
@@ -205,14 +205,14 @@ impl<'py> Outputs<'py> {
     }
 }
 
-/// A call that may run while other threads run Python.
+/// Call that may run while other threads run Python.
 pub(crate) struct Detached<F>(pub(crate) F);
 
 // SAFETY: the call's pointers are of arrays that are borrowed, and of frozen objects that are kept, until it returns.
 unsafe impl<F> Send for Detached<F> {}
 
 impl<F: FnOnce() -> i32> Detached<F> {
-    /// Runs the call without Python's lock. What it refuses is checked before.
+    /// Runs the call without the interpreter's lock. The arguments have been checked before.
     pub(crate) fn run(self, py: Python<'_>) -> PyResult<()> {
         let call = self;
         let status = py.detach(move || {

@@ -1,4 +1,4 @@
-//! Materials at a hit.
+//! BSDFs of Python: a material at a hit, and its calls on many directions.
 
 use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, evals, samples};
 use crate::fields::double;
@@ -9,7 +9,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// A material at a hit, seen from one direction: made by `Material.prepare`.
+/// Material at a hit, seen from one direction, which `Material.prepare` makes.
 ///
 /// Examples
 /// --------
@@ -23,7 +23,7 @@ pub(crate) struct Bsdf {
     material: Py<Material>,
     wo: [f32; 3],
     h: f32,
-    /// Bit i for a lobe i that is kept.
+    /// Bit i is set if lobe i is kept.
     lobes: u32,
     raw: RawBsdf,
 }
@@ -48,7 +48,7 @@ impl Bsdf {
         }
     }
 
-    /// Names of the lobes that are kept.
+    /// Returns the names of the lobes that are kept.
     fn kept(&self) -> Vec<&'static str> {
         let names = self.names().iter().enumerate();
         names
@@ -61,7 +61,7 @@ impl Bsdf {
         self.kept().len() == self.names().len()
     }
 
-    /// Names of the lobes of the model, by slot.
+    /// Returns the names of the lobes of the model, by slot.
     fn names(&self) -> &'static [&'static str] {
         self.material.get().id.lobes()
     }
@@ -69,7 +69,7 @@ impl Bsdf {
 
 #[pymethods]
 impl Bsdf {
-    /// Directional albedo of each lobe by name: the integral of value times cosine over all directions, linear RGB.
+    /// Computes the directional albedo of each lobe by name: the integral of value times cosine over all directions, linear RGB.
     ///
     /// Examples
     /// --------
@@ -86,12 +86,12 @@ impl Bsdf {
         Ok(by_name)
     }
 
-    /// Each lobe's value without its colour, its colour, and its own density at one direction, by name.
+    /// Evaluates each lobe by name at one direction: its value without its colour, its colour, and its own density.
     ///
     /// Parameters
     /// ----------
     /// wi : sequence of 3 floats
-    ///     Towards the light, in the fibre's frame, of unit length.
+    ///     Direction towards the light, in the fibre's frame, of unit length.
     ///
     /// Examples
     /// --------
@@ -111,7 +111,7 @@ impl Bsdf {
         Ok(by_name)
     }
 
-    /// The BSDF with some lobes alone: the others neither scatter nor are sampled.
+    /// Returns the BSDF with only these lobes; the others neither scatter nor are sampled.
     ///
     /// Examples
     /// --------
@@ -144,20 +144,20 @@ impl Bsdf {
         })
     }
 
-    /// Values and densities of N directions.
+    /// Evaluates values and densities of N directions.
     ///
     /// Parameters
     /// ----------
     /// wi : ndarray, float32, shape (3, N), C-contiguous
     ///     Directions towards the light, in the fibre's frame, of unit length.
     /// out : dict, optional
-    ///     Columns to write, some of those below; others are not written.
+    ///     Arrays to write, for some or all of the columns below; other columns are not written. Without it, all arrays are new.
     ///
     /// Returns
     /// -------
     /// dict
-    ///     "value", shape (3, N): S without the cosine, linear RGB, per steradian. "pdf", shape (N,): density, per steradian. The
-    ///     dict is `out` if that is given.
+    ///     "value", shape (3, N): S without the cosine, linear RGB, per steradian. "pdf", shape (N,): density, per steradian. If `out`
+    ///     is given, it is this dict.
     ///
     /// Examples
     /// --------
@@ -184,14 +184,14 @@ impl Bsdf {
         Ok(outputs.dict)
     }
 
-    /// N samples.
+    /// Draws N samples at the hit.
     ///
     /// Parameters
     /// ----------
     /// xi : ndarray, float32, shape (3, N), C-contiguous
-    ///     Uniform numbers in [0, 1): for the lobe, the inclination and the azimuth.
+    ///     Uniform numbers in [0, 1), which select the lobe, the inclination and the azimuth.
     /// out : dict, optional
-    ///     Columns to write, some of those below; others are not written.
+    ///     Arrays to write, for some or all of the columns below; other columns are not written. Without it, all arrays are new.
     ///
     /// Returns
     /// -------
@@ -235,7 +235,7 @@ impl Bsdf {
         format!("{material}.prepare(({u:?}, {v:?}, {w:?}), {h:?}){lobes}")
     }
 
-    /// The call that makes the same BSDF: for pickle and copy.
+    /// Returns the call that makes the same BSDF, for pickle and copy.
     fn __reduce__<'py>(
         &self,
         py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Values of fields between Rust and Python, and refusals of the C interface.
+//! Conversion of the values of fields between Rust and Python, and of errors of the C interface.
 
 use core::ffi::c_char;
 use hairis_capi::layout::Error;
@@ -6,7 +6,7 @@ use hairis_variants::{Kind, Values};
 use pyo3::PyErr;
 use pyo3::exceptions::PyValueError;
 
-/// The text of an array that ends in 0.
+/// Returns the text of an array that ends in 0.
 fn text(from: &[c_char]) -> String {
     let bytes = from
         .iter()
@@ -15,12 +15,12 @@ fn text(from: &[c_char]) -> String {
     String::from_utf8_lossy(&bytes.collect::<Vec<u8>>()).into_owned()
 }
 
-/// A double that rounds to the number of single precision, and has its shortest digits.
+/// Returns a double that rounds to the number in single precision and has its shortest digits.
 pub(crate) fn double(x: f32) -> f64 {
     x.to_string().parse().unwrap_or_else(|_| f64::from(x))
 }
 
-/// A refusal that is not made yet.
+/// Returns an empty error, for the C interface to fill.
 pub(crate) const fn no_error() -> Error {
     Error {
         code: 0,
@@ -31,7 +31,7 @@ pub(crate) const fn no_error() -> Error {
     }
 }
 
-/// The exception of a refusal; nothing where the status is success.
+/// Returns the exception for an error of the C interface, or nothing if the status is success.
 pub(crate) fn check(status: i32, error: &Error) -> Result<(), PyErr> {
     if status == 0 {
         Ok(())
@@ -40,14 +40,14 @@ pub(crate) fn check(status: i32, error: &Error) -> Result<(), PyErr> {
     }
 }
 
-/// The value of a field.
+/// Value of a field.
 pub(crate) enum Value {
     Number(f64),
     Numbers(Vec<f64>),
     Word(&'static str),
 }
 
-/// The fields that have a value, as Python has them.
+/// Returns the fields that have a value, as Python presents them.
 pub(crate) fn fields_of(values: &Values<f64>) -> Vec<(&'static str, Value)> {
     let fields = values.fields().iter().enumerate();
     fields

@@ -1,4 +1,4 @@
-//! Derivatives of values by the fields of a material, by directions and by offsets.
+//! Derivatives of values by the fields of a material, by directions and by offsets across the fibre.
 
 use crate::arrays::Input;
 use hairis::columns::HitColumns;
@@ -9,11 +9,11 @@ use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Parameters,
 use pyo3::PyErr;
 use pyo3::exceptions::PyValueError;
 
-/// Columns of derivatives: names, and rows of each.
+/// Columns of derivatives, with the number of rows of each.
 pub(crate) const GRADIENTS: [(&str, usize); 4] =
     [("value", 3), ("d_wo", 3), ("d_wi", 3), ("d_h", 1)];
 
-/// Reasons for which there are no derivatives.
+/// Reasons for which a call has no derivatives.
 pub(crate) enum Refusal {
     Energy,
     Param(ParamError),
@@ -32,7 +32,7 @@ impl Refusal {
     }
 }
 
-/// The columns that a call reads: hits, directions, and derivatives of a loss by each value.
+/// Columns that a call reads: hits, directions, and derivatives of a loss by each value.
 pub(crate) struct Inputs<'a, 'py> {
     pub(crate) wo: &'a Input<'py>,
     pub(crate) h: Option<&'a Input<'py>>,
@@ -40,11 +40,11 @@ pub(crate) struct Inputs<'a, 'py> {
     pub(crate) d_value: &'a Input<'py>,
 }
 
-/// Writes the columns, and returns the derivatives by fields.
+/// Writes the columns, and returns the derivatives by the fields.
 ///
 /// # Safety
 ///
-/// The outputs have as many numbers in each row as the inputs.
+/// The outputs must have as many numbers in each row as the inputs.
 pub(crate) unsafe fn eval_grad(
     id: ModelId,
     values: &Values,

@@ -1,6 +1,7 @@
 //! Python module over the calls of the C interface: NumPy in, NumPy out.
 //!
-//! Columns are float32 of shape (3, N) or (N,), C-contiguous and aligned: nothing is converted or copied, anything else is refused.
+//! Columns are float32 of shape (3, N) or (N,), C-contiguous and aligned. Nothing is converted or copied, and any other array is
+//! rejected.
 #![allow(unsafe_code, reason = "calls of the C interface on arrays of NumPy")]
 
 mod arrays;
@@ -18,7 +19,7 @@ use material::Material;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Name of the instruction set that calls run on: "avx512", "avx2+fma", or what the module was compiled for.
+/// Returns the name of the instruction set that calls run on: "avx512", "avx2+fma", or the one that the module was compiled for.
 ///
 /// Examples
 /// --------
@@ -29,14 +30,15 @@ fn level() -> &'static str {
     Level::detect().name()
 }
 
-/// Models by name: their choices, presets, lobes and fields.
+/// Describes the models by name, with their choices, presets, lobes and fields.
 ///
 /// Returns
 /// -------
 /// dict
-///     For each model a dict with "choice" (the field that selects its entries, or None) and "choices" (the words of that field),
-///     "presets", "lobes", "near_field" (whether it reads `h`), and "fields": by name a dict with "kind" ("number", "numbers",
-///     "rgb" or "word"), "labels", "range" (least and largest number, or None), "unit", "optional", "instead_of" and "doc".
+///     For each model, a dict with "choice" (the field that selects its entries, or None), "choices" (the words of that field),
+///     "presets", "lobes", "near_field" (True if the model reads `h`), and "fields". For each field by name, "fields" has a dict with
+///     "kind" ("number", "numbers", "rgb" or "word"), "labels", "range" (smallest and largest number, or None), "unit", "optional",
+///     "instead_of" and "doc".
 ///
 /// Examples
 /// --------
@@ -63,7 +65,7 @@ fn models(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(all)
 }
 
-/// The fields of a model, by name.
+/// Describes the fields of a model, by name.
 fn described(py: Python<'_>, model: ModelId) -> PyResult<Bound<'_, PyDict>> {
     let all = PyDict::new(py);
     for field in model.fields() {

@@ -1,4 +1,4 @@
-//! Materials.
+//! Materials of Python: a model with checked parameters, and its calls on many hits.
 
 use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, evals, samples};
 use crate::bsdf::Bsdf;
@@ -21,18 +21,18 @@ use pyo3::types::{PyDict, PyTuple};
 /// model : str
 ///     "gaussian", "cauchy", "kajiya-kay" or "chiang"; `hairis.models()` lists them with their fields.
 /// preset : str, optional
-///     Values of all fields: "brown", "blond" and so on. Without one, the model's defaults.
+///     Name of values for all fields: "brown", "blond" and so on. Without a preset, fields have the model's defaults.
 /// energy : {"conserving", "raw", "scaled"}
-///     "conserving" returns no more light than arrives, direction by direction. "raw" is the model as it is. "scaled" is darker,
-///     but stays reciprocal.
+///     With "conserving", no direction returns more light than arrives. With "raw", the model stays as it is. With "scaled", the
+///     model is darker but stays reciprocal.
 /// **fields
-///     Values in place of the preset's: numbers, sequences of numbers, or words. Angles are radians, colours linear RGB. The field
-///     "sampler" of "gaussian" and "cauchy" and "select" of "chiang" choose how directions are sampled.
+///     Values in place of the preset's values: numbers, sequences of numbers, or words. Angles are in radians, colours in linear RGB.
+///     The field "sampler" of "gaussian" and "cauchy" and the field "select" of "chiang" choose how directions are sampled.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     A name that there is not, or a value out of its range; the message says which there are.
+///     If a name does not exist or a value is out of its range. The message lists the valid names, or states the rule.
 ///
 /// Examples
 /// --------
@@ -52,10 +52,10 @@ pub(crate) struct Material {
     energy: &'static str,
 }
 
-/// The columns of hits that a call reads: `wo`, directions or uniform numbers, and `h`.
+/// Columns of hits that a call reads: `wo`, directions or uniform numbers, and `h`.
 type Columns<'py> = (Input<'py>, Input<'py>, Option<Input<'py>>);
 
-/// A call of the C interface on hits, which writes columns `T`.
+/// Function of the C interface on hits, which writes columns `T`.
 type Call<T> = unsafe extern "C" fn(
     *const RawMaterial,
     usize,
@@ -66,7 +66,7 @@ type Call<T> = unsafe extern "C" fn(
 ) -> i32;
 
 impl Material {
-    /// The material of parameters, and of an energy with its code.
+    /// Makes a material from parameters, and from an energy with its code.
     fn of(params: &Params, (energy, code): (&'static str, u32)) -> PyResult<Self> {
         let mut error = no_error();
         let mut raw = RawMaterial {
@@ -90,12 +90,12 @@ impl Material {
         })
     }
 
-    /// The fields that have a value.
+    /// Returns the fields that have a value.
     fn given(&self) -> Vec<(&'static str, Value)> {
         fields_of(&self.values.map(double))
     }
 
-    /// Calls the C interface on hits. The caller borrows the arrays of `to`.
+    /// Calls the C interface on hits. The caller must hold a borrow of the arrays of `to`.
     fn call<T>(
         &self,
         py: Python<'_>,
@@ -113,7 +113,7 @@ impl Material {
         Detached(move || unsafe { call(raw, 1, n, &raw const hits, &raw const rows, to) }).run(py)
     }
 
-    /// The columns of hits: `wo`, `h` and the third, of one length.
+    /// Reads the columns of hits: `wo`, `h` and the third, all of one length.
     fn inputs<'py>(
         wo: &Bound<'py, PyAny>,
         third: (&str, &Bound<'py, PyAny>),
@@ -126,7 +126,7 @@ impl Material {
     }
 }
 
-/// Values by name: a float, a tuple of floats or a word each.
+/// Makes a dict of values by name, each a float, a tuple of floats or a word.
 fn dict_of(
     py: Python<'_>,
     values: impl IntoIterator<Item = (&'static str, Value)>,
@@ -156,13 +156,13 @@ impl Material {
         Self::of(&params_of(model, preset, fields)?, energy)
     }
 
-    /// A material from an object of `hairis eval`: "model", "params", and the field of its choice. The fields of a query are
-    /// ignored.
+    /// Makes a material from a JSON object of `hairis eval`, which has "model", "params", and the field of its choice. The fields of a
+    /// query are ignored.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     A material that `hairis eval` refuses: a field is missing, unknown, given twice or out of its range. The message names it.
+    ///     If `hairis eval` rejects the material: a field is missing, unknown, given twice or out of its range. The message names it.
     ///
     /// Examples
     /// --------
@@ -183,7 +183,7 @@ impl Material {
         Self::of(&params, energy_of(energy)?)
     }
 
-    /// The material as an object of `hairis eval`, in one line. Energy is not part of it.
+    /// Writes the material as a JSON object of `hairis eval`, in one line. The energy is not part of the object.
     ///
     /// Examples
     /// --------
@@ -205,55 +205,55 @@ impl Material {
         )
     }
 
-    /// Name of the model.
+    /// Name of the model: "gaussian", "cauchy", "kajiya-kay" or "chiang".
     #[getter]
     fn model(&self) -> &'static str {
         self.id.name()
     }
 
-    /// How directions are sampled: the word of "sampler" or "select"; None where there is no choice.
+    /// Word of "sampler" or "select", which decides how directions are sampled; None if the model has no choice.
     #[getter]
     fn choice(&self) -> Option<&'static str> {
         self.id.choice().map(|(_, word)| word)
     }
 
-    /// "raw", "conserving" or "scaled".
+    /// Energy of the material: "raw", "conserving" or "scaled".
     #[getter]
     const fn energy(&self) -> &'static str {
         self.energy
     }
 
-    /// Values of the fields: a float, a tuple of floats or a word each.
+    /// Values of the fields by name, each a float, a tuple of floats or a word.
     #[getter]
     fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         dict_of(py, self.given())
     }
 
-    /// Names of the lobes, by slot: the numbers in the column "lobe" of samples.
+    /// Names of the lobes by slot, which is the number in the column "lobe" of samples.
     #[getter]
     fn lobe_names(&self) -> &'static [&'static str] {
         self.id.lobes()
     }
 
-    /// Whether the model reads `h`, the offset of a hit across the fibre.
+    /// True if the model reads `h`, the offset of a hit across the fibre.
     #[getter]
     fn near_field(&self) -> bool {
         self.id.is_near_field()
     }
 
-    /// The largest directional albedo, without the factor of energy "conserving": above 1, the model gains light.
+    /// Largest directional albedo, without the factor of energy "conserving". Above 1, the model returns more light than arrives.
     #[getter]
     fn max_albedo(&self) -> f64 {
         // SAFETY: the material is initialised.
         double(unsafe { setup::hairis_material_max_albedo(&raw const self.raw) })
     }
 
-    /// The BSDF at a hit.
+    /// Prepares the BSDF of the material at a hit.
     ///
     /// Parameters
     /// ----------
     /// wo : sequence of 3 floats
-    ///     Towards the viewer, in the fibre's frame: u along it from root to tip, v and w across.
+    ///     Direction towards the viewer, in the fibre's frame: u runs along the fibre from root to tip, and v and w lie across it.
     /// h : float
     ///     Offset of the hit across the fibre, in [-1, 1]; only "chiang" reads it.
     ///
@@ -267,22 +267,22 @@ impl Material {
         Bsdf::new(slf.unbind(), wo, h)
     }
 
-    /// Values and densities of N directions, each at a hit of its own.
+    /// Evaluates values and densities of N directions, each at a hit of its own.
     ///
     /// Parameters
     /// ----------
     /// wo, wi : ndarray, float32, shape (3, N), C-contiguous
     ///     Directions towards the viewer and the light, in the fibre's frame, of unit length.
     /// h : ndarray, float32, shape (N,), optional
-    ///     Offsets across the fibre, in [-1, 1]; 0 without it.
+    ///     Offsets of the hits across the fibre, in [-1, 1]; 0 if left out.
     /// out : dict, optional
-    ///     Columns to write, some of those below; others are not written.
+    ///     Arrays to write, for some or all of the columns below; other columns are not written. Without it, all arrays are new.
     ///
     /// Returns
     /// -------
     /// dict
-    ///     "value", shape (3, N): S without the cosine, linear RGB, per steradian. "pdf", shape (N,): density, per steradian. The
-    ///     dict is `out` if that is given.
+    ///     "value", shape (3, N): S without the cosine, linear RGB, per steradian. "pdf", shape (N,): density, per steradian. If `out`
+    ///     is given, it is this dict.
     ///
     /// Examples
     /// --------
@@ -305,25 +305,25 @@ impl Material {
         Ok(outputs.dict)
     }
 
-    /// N samples, each at a hit of its own.
+    /// Draws N samples, each at a hit of its own.
     ///
     /// Parameters
     /// ----------
     /// wo : ndarray, float32, shape (3, N), C-contiguous
     ///     Directions towards the viewer, in the fibre's frame, of unit length.
     /// xi : ndarray, float32, shape (3, N), C-contiguous
-    ///     Uniform numbers in [0, 1): for the lobe, the inclination and the azimuth.
+    ///     Uniform numbers in [0, 1), which select the lobe, the inclination and the azimuth.
     /// h : ndarray, float32, shape (N,), optional
-    ///     Offsets across the fibre, in [-1, 1]; 0 without it.
+    ///     Offsets of the hits across the fibre, in [-1, 1]; 0 if left out.
     /// out : dict, optional
-    ///     Columns to write, some of those below; others are not written.
+    ///     Arrays to write, for some or all of the columns below; other columns are not written. Without it, all arrays are new.
     ///
     /// Returns
     /// -------
     /// dict
     ///     "wi", shape (3, N): directions. "value", shape (3, N), and "pdf", shape (N,): as in `eval_hits`. "weight", shape (3, N):
-    ///     value times the cosine over the density. "lobe", shape (N,): place in `lobe_names`, -1 for a discarded sample, which has
-    ///     value, pdf and weight 0; it counts.
+    ///     value times the cosine over the density. "lobe", shape (N,): place in `lobe_names`, or -1 for a discarded sample. A discarded
+    ///     sample has a value, pdf and weight of 0, and still counts.
     ///
     /// Examples
     /// --------
@@ -347,29 +347,29 @@ impl Material {
         Ok(outputs.dict)
     }
 
-    /// Values of N directions, each at a hit of its own, and the derivatives of a loss of them.
+    /// Evaluates N directions, each at a hit of its own, and the derivatives of a loss of their values.
     ///
     /// Parameters
     /// ----------
     /// wo, wi, h
     ///     As in `eval_hits`.
     /// d_value : ndarray, float32, shape (3, N), C-contiguous
-    ///     Derivative of the loss by each value, which reverse mode calls its cotangent.
+    ///     Derivative of the loss by each value, which reverse mode calls the cotangent of the value.
     /// out : dict, optional
-    ///     Columns to write, some of those below; others are not written.
+    ///     Arrays to write, for some or all of the columns below; other columns are not written. Without it, all arrays are new.
     ///
     /// Returns
     /// -------
     /// columns : dict
-    ///     "value", shape (3, N), has the bits of `eval_hits`. "d_wo" and "d_wi", shape (3, N), and "d_h", shape (N,): derivatives
-    ///     of the loss. The dict is `out` if that is given.
+    ///     "value", shape (3, N): the same bits as in `eval_hits`. "d_wo" and "d_wi", shape (3, N), and "d_h", shape (N,): derivatives
+    ///     of the loss. If `out` is given, it is this dict.
     /// d_fields : dict
-    ///     Derivatives by the fields that have numbers, in the form of `fields`: sums over all hits.
+    ///     Derivatives of the loss by the fields that have numbers, summed over all hits, in the form of `fields`.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     A material of "gaussian" or "cauchy" whose energy is not "raw": the factor of energy has no derivatives.
+    ///     If a material of "gaussian" or "cauchy" has another energy than "raw", because the factor of energy has no derivatives.
     ///
     /// Examples
     /// --------
@@ -444,7 +444,7 @@ impl Material {
         pyo3::types::PyString::new(py, &self.__repr__()).hash()
     }
 
-    /// Arguments of the call that makes the same material: for pickle and copy.
+    /// Returns the arguments of the call that makes the same material, for pickle and copy.
     fn __getnewargs_ex__<'py>(
         &self,
         py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Values between Python and the C interface.
+//! Conversion of parameters and their values from Python to the C interface.
 
 use crate::fields::{Value, check, no_error};
 use core::ffi::CStr;
@@ -21,7 +21,7 @@ fn c_string(text: &str) -> PyResult<CString> {
         .map_err(|_| PyValueError::new_err(format!("names must have no NUL, got {text:?}")))
 }
 
-/// The code of an energy's name.
+/// Returns an energy by name, with its code.
 pub(crate) fn energy_of(name: &str) -> PyResult<(&'static str, u32)> {
     let found = ENERGIES.iter().find(|(one, _)| *one == name).copied();
     found.ok_or_else(|| {
@@ -31,7 +31,7 @@ pub(crate) fn energy_of(name: &str) -> PyResult<(&'static str, u32)> {
     })
 }
 
-/// The parameters of a model, or of a preset, with fields in place of its own.
+/// Makes the parameters of a model or of its preset, with the values of `fields` in place of their own.
 pub(crate) fn params_of(
     model: &str,
     preset: Option<&str>,
@@ -85,18 +85,18 @@ pub(crate) fn params_of(
     Ok(params)
 }
 
-/// The exception of a value that is of another type than its field.
+/// Makes the exception for a value of another type than its field.
 fn wrong(name: &str, what: &str, value: &Bound<'_, PyAny>) -> PyErr {
     PyTypeError::new_err(format!("{name} must be {what}, got {}", value.get_type()))
 }
 
-/// The word that a field is given.
+/// Reads the word that a field is given.
 fn word_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<CString> {
     let word: String = value.extract().map_err(|_| wrong(name, "a word", value))?;
     c_string(&word)
 }
 
-/// Sets a field to a value of Python.
+/// Sets a field to a value from Python.
 fn set(params: &mut Params, field: &Field, value: &Bound<'_, PyAny>) -> PyResult<()> {
     let name = field.name;
     let (c_name, mut error) = (c_string(name)?, no_error());
@@ -130,7 +130,7 @@ fn set(params: &mut Params, field: &Field, value: &Bound<'_, PyAny>) -> PyResult
     check(status, &error)
 }
 
-/// A value as Python writes it, or as JSON has it.
+/// Writes a value as Python does, or as JSON does.
 pub(crate) fn written(value: &Value, is_json: bool) -> String {
     let (open, close) = if is_json { ('[', ']') } else { ('(', ')') };
     match value {

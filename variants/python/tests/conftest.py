@@ -1,4 +1,4 @@
-"""Names that docstrings' examples use, and directions for tests."""
+"""Names that the examples of docstrings use, and directions for tests."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from numpy.typing import NDArray
 
 
 def directions(n: int, seed: int) -> NDArray[np.float32]:
-    """Return unit vectors, uniform over the sphere."""
+    """Returns unit vectors, uniform over the sphere."""
     v = np.random.default_rng(seed).normal(size=(3, n))
     return np.ascontiguousarray(v / np.linalg.norm(v, axis=0), np.float32)
 
 
 def bits(a: NDArray[Any]) -> NDArray[np.uint32]:
-    """Return the bits of floats: NaN equals NaN, and 0 is not -0."""
+    """Returns the bits of floats, by which NaN equals NaN, and 0 differs from -0."""
     return a.view(np.uint32)
 
 
 def unaligned(n: int) -> NDArray[np.float32]:
-    """Return a C-contiguous column of shape (3, n) that starts at an odd address."""
+    """Returns a C-contiguous column of shape (3, n) that starts at an odd address."""
     return np.zeros(12 * n + 1, np.uint8)[1:].view(np.float32).reshape(3, n)
 
 
 @pytest.fixture
 def xi() -> NDArray[np.float32]:
-    """Uniform numbers."""
+    """Returns uniform numbers for sampling."""
     return np.random.default_rng(3).random((3, 1000), np.float32)

@@ -1,4 +1,4 @@
-"""The wheel against the C library by ctypes: the same bits, and the time of each. same_as_c.py LIBRARY"""
+"""Compares the wheel with the C library by ctypes: both must have the same bits; prints the time of each. same_as_c.py LIBRARY"""
 
 from __future__ import annotations
 

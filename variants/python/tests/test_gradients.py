@@ -1,4 +1,4 @@
-"""Derivatives: against differences, against JAX's reverse mode, and what they refuse."""
+"""Tests of derivatives against differences and against the reverse mode of JAX, and of the arguments that they reject."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DEFAULTS = [(name, preset) for name, model in hairis.models().items() for preset
 
 
 def case(n: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
-    """Hits, directions, derivatives of a loss, and offsets."""
+    """Returns hits, directions, derivatives of a loss, and offsets."""
     rng = np.random.default_rng(5)
     d_value = rng.uniform(-1, 1, (3, n)).astype(np.float32)
     return directions(n, 1), directions(n, 2), d_value, rng.uniform(-0.9, 0.9, n).astype(np.float32)
@@ -74,7 +74,7 @@ def test_refusals() -> None:
 
 
 def test_jax(capsys: pytest.CaptureFixture[str]) -> None:
-    """The example's gradients are those of differences along a direction, and it recovers the widths that it hid."""
+    """The gradients of the example agree with differences along a direction, and the example recovers the widths that it hid."""
     jax = pytest.importorskip("jax")
     sys.path.insert(0, str(Path(__file__).parent.parent / "examples"))
     import jax_hair

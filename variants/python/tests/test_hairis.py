@@ -1,4 +1,4 @@
-"""Tests of the wheel: what it answers, what it refuses, and that objects make themselves again."""
+"""Tests of the wheel: its results, the arguments that it rejects, and the reconstruction of objects."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_materials_differ() -> None:
 
 
 def test_replaced_fields_leave_no_trace() -> None:
-    """Materials are equal whose fields are equal, whatever the fields that others took the place of."""
+    """Materials with equal fields are equal, whatever the values of fields that others took the place of."""
     color = (0.5, 0.4, 0.3)
     hair = hairis.Material("chiang", "brown", color=color)
     assert pickle.loads(pickle.dumps(hair)) == hair == hairis.Material.from_json(hair.to_json())
@@ -64,7 +64,7 @@ def test_replaced_fields_leave_no_trace() -> None:
 
 @pytest.mark.parametrize(("model", "preset", "choice"), ALL)
 def test_columns_agree(model: str, preset: str, choice: dict[str, Any], xi: NDArray[np.float32]) -> None:
-    """Samples have the densities and values that evaluations have; furnace and albedo agree."""
+    """Samples have the densities and values of evaluations, and the furnace agrees with the albedo."""
     hair = hairis.Material(model, preset, energy="raw", **choice)
     bsdf = hair.prepare((0.6, 0.8, 0.0), h=0.1)
     samples = bsdf.sample_columns(xi)
@@ -230,7 +230,7 @@ def test_overlapping_outputs_are_refused() -> None:
 
 
 def test_threads() -> None:
-    """Threads share a material and its inputs."""
+    """Threads may share a material and its inputs."""
     hair, wo, wi = hairis.Material("cauchy", "brown"), directions(5000, 1), directions(5000, 2)
     want = hair.eval_hits(wo, wi)
     results: list[dict[str, Any]] = []

@@ -1,41 +1,41 @@
-//! Names of what a program is for, and of what it does.
+//! Targets that a program is traced for, and the calls that become its functions.
 
-/// Arithmetic of the target.
+/// Arithmetic of the target: how products with sums round, and whose exponentials are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Target {
-    /// Products and sums round apart: the bits of one lane.
+    /// Products and sums round separately, with the bits of one lane.
     Exact,
-    /// Products with sums round once: the bits of a level that fuses.
+    /// Products with sums round once, with the bits of a level that fuses.
     Fused,
-    /// Products with sums may round once or twice, as `fma` of WGSL.
+    /// Products with sums may round once or twice, as WGSL allows for its `fma`.
     Gpu,
-    /// As [`Gpu`](Self::Gpu), with `exp2` and `log2` of the target.
+    /// Like [`Gpu`](Self::Gpu), but with the `exp2` and `log2` of the target.
     GpuNative,
 }
 
-/// A function of a model.
+/// Function of a model that a program provides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Call {
-    /// Parameters to the constants of a material; of models of the list alone.
+    /// Computes the constants of a material from parameters; available only for models of the list.
     Material,
-    /// Material and hit to the constants of a shading point.
+    /// Computes the constants of a shading point from a material and a hit.
     Prepare,
-    /// Value and density at a direction.
+    /// Evaluates value and density at a direction.
     Eval,
-    /// A sampled direction.
+    /// Draws a direction, and returns it with its value, density and weight.
     Sample,
-    /// Value, colour and density of each lobe at a direction.
+    /// Evaluates the value, the colour and the density of each lobe at a direction.
     Lobes,
-    /// [`Prepare`](Self::Prepare) and [`Eval`](Self::Eval) in one.
+    /// Combines [`Prepare`](Self::Prepare) and [`Eval`](Self::Eval) in one function.
     EvalHit,
-    /// [`Prepare`](Self::Prepare) and [`Sample`](Self::Sample) in one.
+    /// Combines [`Prepare`](Self::Prepare) and [`Sample`](Self::Sample) in one function.
     SampleHit,
-    /// [`Prepare`](Self::Prepare), [`Eval`](Self::Eval) and [`Sample`](Self::Sample) in one: a bounce with one light.
+    /// Combines [`Prepare`](Self::Prepare), [`Eval`](Self::Eval) and [`Sample`](Self::Sample): a bounce with one light.
     EvalSampleHit,
 }
 
 impl Call {
-    /// Every function.
+    /// Every function, in the order in which a program prints them.
     pub const ALL: [Self; 8] = [
         Self::Material,
         Self::Prepare,
@@ -47,7 +47,7 @@ impl Call {
         Self::EvalSampleHit,
     ];
 
-    /// Purpose, in a line.
+    /// Returns the purpose of the function as one line, which is printed as a comment above it.
     #[must_use]
     pub const fn purpose(self) -> &'static str {
         match self {
@@ -68,7 +68,7 @@ impl Call {
         }
     }
 
-    /// Name.
+    /// Returns the name of the function without the name of the model.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -1,16 +1,16 @@
-//! A function in double precision, for differences and errors.
+//! Interpreter of functions in double precision, for difference quotients and for errors of single precision.
 
 use crate::function::Function;
 use crate::graph::Kind;
 use hairis::simd::trace::Op;
 
 impl Function {
-    /// Computes the results in double precision, and the choices on the way: masks, operands of minima, signs, and integers
-    /// that numbers are rounded to. Where two arguments give the same choices the function is smooth between them.
+    /// Computes the results in double precision, together with the choices on the way: masks, operands of minima, signs, and integers
+    /// that numbers are rounded to. If two sets of inputs give the same choices, the function is smooth between them.
     ///
     /// # Panics
     ///
-    /// If there are fewer inputs than the function reads.
+    /// Panics if there are fewer inputs than the function reads.
     #[must_use]
     pub fn run_double(&self, inputs: &[f64]) -> (Vec<f64>, Vec<i64>) {
         let (graph, mut choices) = (self.graph(), Vec::new());
@@ -24,7 +24,7 @@ impl Function {
                     for (operand, place) in v.iter_mut().zip(node.operands()) {
                         *operand = values[*place as usize];
                     }
-                    // Sums that round to an integer.
+                    // Sums with a large constant, which round the other operand to an integer.
                     if matches!(op, Op::Add | Op::MulAdd)
                         && let Some(rounds) = node
                             .operands()
@@ -70,7 +70,7 @@ fn choice(kind: Kind, value: f64, operand: impl Fn(usize) -> f64) -> Option<i64>
     })
 }
 
-/// Exponent of the power of two at or below `sqrt(2)` times the number.
+/// Returns the exponent of the largest power of two that is at most `sqrt(2)` times the magnitude of the number.
 fn exponent(x: f64) -> f64 {
     (x.abs() * core::f64::consts::SQRT_2).log2().floor()
 }
@@ -93,7 +93,7 @@ fn apply(op: Op, [a, b, c]: [f64; 3]) -> f64 {
         Op::Max => select(a > b, a, b),
         Op::TimesSign => select(b.is_sign_negative(), -a, a),
         Op::NegateIf => select(a != 0.0, -b, b),
-        // An integer in the low bits of 2^23 and more, as a biased exponent.
+        // The argument holds an integer in the low bits of a number from 2^23 on: it is read as a biased exponent.
         Op::ShiftLeft23 => {
             let biased = a - 8_388_608.0;
             select(biased < 0.5, 0.0, (biased - 127.0).exp2())

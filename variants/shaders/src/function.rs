@@ -1,19 +1,19 @@
-//! A function: a graph with arguments and results.
+//! Functions traced from a model: a graph of operations with arguments and results.
 
 use crate::graph::{Graph, Kind, Rounding, Value, apply};
 use crate::record::{Field, Record};
 
-/// Argument of a function.
+/// Argument of a function: a whole record, or a single field.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Argument {
-    /// A record, and the name under which it is passed.
+    /// A record, preceded by the name under which it is passed.
     Record(String, Record),
-    /// A vector or a number.
+    /// A vector or a number that is passed on its own.
     Field(Field),
 }
 
 impl Argument {
-    /// Name.
+    /// Returns the name of the argument in the signature of the function.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
@@ -22,7 +22,7 @@ impl Argument {
         }
     }
 
-    /// Count of its numbers.
+    /// Returns the number of numbers that the argument holds.
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "no argument is empty")]
     pub fn len(&self) -> usize {
@@ -32,7 +32,7 @@ impl Argument {
         }
     }
 
-    /// Each of its numbers, as every language writes it.
+    /// Returns the name of each number of the argument, as every language writes it.
     #[must_use]
     pub fn places(&self) -> Vec<String> {
         match self {
@@ -45,7 +45,7 @@ impl Argument {
     }
 }
 
-/// A function of numbers.
+/// Function of numbers, traced from a model: named arguments, a record as its result, and the graph that computes it.
 #[derive(Clone, Debug)]
 pub struct Function {
     name: String,
@@ -56,7 +56,7 @@ pub struct Function {
 }
 
 impl Function {
-    /// The function of a graph, without what no result reads.
+    /// Makes a function of a graph, and drops the nodes that no result reads.
     pub(crate) fn new(
         name: String,
         arguments: Vec<Argument>,
@@ -88,44 +88,44 @@ impl Function {
         }
     }
 
-    /// Name without that of the model: `eval_hit`.
+    /// Returns the name of the function without the name of the model, for example `eval_hit`.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The arguments.
+    /// Returns the arguments in the order of the signature.
     #[must_use]
     pub fn arguments(&self) -> &[Argument] {
         &self.arguments
     }
 
-    /// Type of the result.
+    /// Returns the layout of the result, which is also its printed type.
     #[must_use]
     pub const fn output(&self) -> &Record {
         &self.output
     }
 
-    /// Place in the graph of each number of the result.
+    /// Returns the place in the [graph](Self::graph) of each number of the result.
     #[must_use]
     pub fn results(&self) -> &[u32] {
         &self.results
     }
 
-    /// The operations.
+    /// Returns the graph: the operations in the order in which the model computes them.
     #[must_use]
     pub const fn graph(&self) -> &Graph {
         &self.graph
     }
 
-    /// Each number that the function reads, in order.
+    /// Returns the name of each number that the function takes, argument by argument.
     #[must_use]
     pub fn inputs(&self) -> Vec<String> {
         self.arguments.iter().flat_map(Argument::places).collect()
     }
 
-    /// The function with the fields `names` of its result alone, and no operation that the others need. `None` if a field
-    /// is none of the result.
+    /// Returns the function reduced to the fields `names` of its result, without the operations that only other fields need. Returns
+    /// `None` if the result lacks one of these fields.
     #[must_use]
     pub fn only(&self, names: &[&str]) -> Option<Self> {
         let (mut fields, mut results) = (Vec::new(), Vec::new());
@@ -154,12 +154,12 @@ impl Function {
         ))
     }
 
-    /// Computes the results for the numbers `inputs`: what every translation has to give. [`Rounding`] is that of products
-    /// with sums which lanes that fuse record.
+    /// Computes the results for the numbers `inputs`, which every translation has to reproduce. [`Rounding`] applies to
+    /// [`Op::MulAdd`](hairis::simd::trace::Op::MulAdd), which lanes that fuse record for a product with a sum.
     ///
     /// # Panics
     ///
-    /// If there are fewer inputs than the function reads.
+    /// Panics if there are fewer inputs than the function reads.
     #[must_use]
     pub fn run(&self, inputs: &[f32], rounding: Rounding) -> Vec<f32> {
         let mut values: Vec<Value> = Vec::with_capacity(self.graph.nodes().len());
@@ -180,21 +180,22 @@ impl Function {
         self.results.iter().map(number).collect()
     }
 
-    /// Count of operations.
+    /// Returns the number of operations, without arguments and constants.
     #[must_use]
     pub fn operations(&self) -> usize {
         let nodes = self.graph.nodes().iter();
         nodes.filter(|node| node.is_computed()).count()
     }
 
-    /// The most numbers that wait at once in the order of [`schedule`](Self::schedule); arguments and constants are read where
-    /// they are used.
+    /// Returns the largest number of values that are live at once in the order of [`schedule`](Self::schedule). Arguments and constants
+    /// do not count, because they are read where they are used.
     #[must_use]
     pub fn waiting(&self) -> usize {
         self.waiting_in(&self.schedule())
     }
 
-    /// Order of the operations: that of the model, or each as late as possible, whichever lets fewer numbers wait.
+    /// Returns the order of the operations: the order of the model, or each operation as late as possible if fewer values are then live
+    /// at once.
     #[must_use]
     pub fn schedule(&self) -> Vec<u32> {
         let traced: Vec<u32> = (0_u32..)
@@ -210,7 +211,7 @@ impl Function {
         }
     }
 
-    /// Each operation right before the first that reads it.
+    /// Returns the order in which each operation comes just before the first operation that reads its result.
     fn late(&self) -> Vec<u32> {
         let mut order = Vec::new();
         let mut is_done = vec![false; self.graph.nodes().len()];

@@ -1,4 +1,4 @@
-//! Derivatives, in reverse: one function returns the results, and the gradient of their weighted sum to every argument.
+//! Derivatives in reverse mode: one function returns the results and the gradient of their weighted sum by every argument.
 
 use crate::function::{Argument, Function};
 use crate::graph::{Graph, Kind};
@@ -6,14 +6,14 @@ use crate::record::{Field, Record};
 use core::f32::consts::{LN_2, LOG2_E};
 use hairis::simd::trace::Op;
 
-/// The least root that a derivative divides by: that of 0 is finite.
+/// Least root that a derivative divides by, so that the derivative of the root of 0 is finite.
 const LEAST_ROOT: f32 = 1e-18;
 
-/// The reverse pass: nodes that are added, and the derivative to each node so far. None is 0.
+/// Reverse pass: the graph with the nodes added so far, and the derivative by each node so far, where `None` stands for 0.
 struct Pass {
     graph: Graph,
     adjoints: Vec<Option<u32>>,
-    /// Whether products are added in one operation.
+    /// True if a product is added to a derivative in one fused operation.
     fuses: bool,
 }
 
@@ -24,7 +24,7 @@ impl Pass {
         self.graph.op(op, args, None)
     }
 
-    /// Adds `term` to the derivative to the node at `to`.
+    /// Adds `term` to the derivative by the node at `to`.
     fn give(&mut self, to: u32, term: u32) {
         if !self.reads_arguments(to) {
             return;
@@ -36,7 +36,7 @@ impl Pass {
         self.adjoints[to as usize] = Some(sum);
     }
 
-    /// Sum of two derivatives, of which either may be a product.
+    /// Adds two derivatives, either of which may be a product.
     fn sum(&mut self, before: u32, term: u32) -> u32 {
         let product = |place: u32| {
             let node = self.graph.node(place);
@@ -62,10 +62,10 @@ impl Pass {
         }
     }
 
-    /// Passes the derivative to the operation at `this` on to its operands.
+    /// Passes the derivative by the operation at `this` on to its operands.
     ///
-    /// Three rules are no textbook's. A sum that rounds to an integer is a step. The mantissa of `x` is `x` over a power of two
-    /// that is constant around it. The upper half of a number has the derivative of the number, so that the rest has none.
+    /// Three rules differ from those of a textbook. A sum that rounds to an integer is a step. The mantissa of `x` is `x` over a power of
+    /// two that is constant around it. The upper half of a number has the derivative of the number, so that the remaining bits have none.
     fn pass_on(&mut self, op: Op, this: u32, args: [u32; 3], adjoint: u32) {
         let [a, b, c] = args;
         match op {
@@ -147,7 +147,7 @@ impl Pass {
         }
     }
 
-    /// Passes the derivative to the first where the mask is set, to the second elsewhere.
+    /// Passes the derivative to the first operand where the mask is set, and to the second elsewhere.
     fn give_either(&mut self, mask: u32, [yes, no]: [u32; 2], adjoint: u32) {
         let zero = self.graph.constant(0.0);
         let to_yes = self.op(Op::Select, [mask, adjoint, zero]);
@@ -158,30 +158,30 @@ impl Pass {
 }
 
 impl Function {
-    /// The function and its gradient, for one weight per number of the result.
+    /// Returns the function extended by its gradient, which takes one weight per number of the result.
     ///
-    /// - Arguments: those of the function, and `weights`, of the type of the result.
-    /// - Result: the fields of the result, and for each number of the arguments the derivative to it of the sum of
-    ///   `weight * result`, in fields named `d_material_...`, `d_wo`, `d_h`.
+    /// - Arguments: the arguments of the function, and `weights`, which has the fields of the result.
+    /// - Result: the fields of the result, and for each number of the arguments the derivative of the sum of `weight * result` by that
+    ///   number, in fields named `d_material_...`, `d_wo`, `d_h`.
     ///
-    /// Derivatives are finite: 0 where they would be infinite or undefined, as along the fibre, where the model is black.
-    /// Choices are taken as constant: the derivative is that of the branch. `wo` and `wi` of unit length, within 1e-5, are not
-    /// normalised: the derivative is right along the sphere, and arbitrary across it.
+    /// Derivatives are finite: they are 0 where they would be infinite or undefined, for example along the fibre, where the model
+    /// evaluates to zero. Choices are taken as constant: the derivative is that of the branch. `wo` and `wi` of unit length, within 1e-5,
+    /// are not normalised, so the derivative is right along the sphere, and arbitrary across it.
     ///
     /// # Panics
     ///
-    /// If there are 2^32 operations.
+    /// Panics if the graph would have 2^32 nodes.
     #[must_use]
     pub fn gradient(&self) -> Self {
         self.differentiate(false)
     }
 
-    /// As [`gradient`](Self::gradient), with products of derivatives added in one operation, for fewer of them. A target must round it
-    /// once: it is not for GPUs, which may take it apart.
+    /// Returns the same as [`gradient`](Self::gradient) with fewer operations, because products are added to derivatives in one fused
+    /// operation. The target must round that operation once. GPUs may split it, so this gradient is not for them.
     ///
     /// # Panics
     ///
-    /// If there are 2^32 operations.
+    /// Panics if the graph would have 2^32 nodes.
     #[must_use]
     pub fn fused_gradient(&self) -> Self {
         self.differentiate(true)

@@ -1,32 +1,32 @@
-//! The graph that a traced model leaves: operations in the order of their computation, each recorded once.
+//! Graph recorded while a model is traced: operations in the order of their computation, each recorded once.
 
 use core::cell::RefCell;
 use core::panic::Location;
 use hairis::simd::trace::{Arithmetic, Op, Recorder, Traced};
 use std::collections::HashMap;
 
-/// Kind of a node.
+/// Kind of a node: an argument, an operation, or a constant mask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
-    /// An argument of the function, by its place.
+    /// An argument of the function, given by its place among the inputs.
     Input(u32),
-    /// An operation.
+    /// An operation on the results of earlier nodes, or a constant number.
     Op(Op),
     /// A mask that is the same for all inputs.
     Mask(bool),
 }
 
-/// A node, and the places of the nodes that it reads.
+/// Node of a graph, with the places of the nodes that it reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Node {
-    /// Kind.
+    /// Kind of the node, which determines how many operands are read.
     pub kind: Kind,
-    /// Operands, as many as the operation reads.
+    /// Operands, of which the first are used: as many as the operation reads.
     args: [u32; 3],
 }
 
 impl Node {
-    /// Places of the operands in the graph.
+    /// Returns the places in the graph of the operands; arguments and constants have none.
     #[must_use]
     pub fn operands(&self) -> &[u32] {
         match self.kind {
@@ -35,13 +35,13 @@ impl Node {
         }
     }
 
-    /// Whether it is computed: neither an argument nor a constant.
+    /// Returns true if the node is computed, which means that it is neither an argument nor a constant.
     #[must_use]
     pub fn is_computed(&self) -> bool {
         !self.operands().is_empty()
     }
 
-    /// Whether its value is a mask.
+    /// Returns true if the value of the node is a mask.
     #[must_use]
     pub fn is_mask(&self) -> bool {
         match self.kind {
@@ -52,7 +52,7 @@ impl Node {
     }
 }
 
-/// A number or a mask.
+/// Value of a node: a number or a mask.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Value {
     Number(f32),
@@ -74,16 +74,16 @@ impl Value {
     }
 }
 
-/// How [`Op::MulAdd`] rounds.
+/// Rounding of [`Op::MulAdd`], which targets may compute in one or two steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
-    /// Once: the operation fuses.
+    /// Rounds once, because the operation fuses.
     Once,
-    /// Twice: targets may split it.
+    /// Rounds twice, because the target may split the operation.
     Twice,
 }
 
-/// Result of an operation: the bits of one lane.
+/// Computes the result of an operation, with the bits of one lane.
 pub(crate) fn apply(op: Op, v: &[Value], rounding: Rounding) -> Value {
     let a = || v[0].number();
     let b = || v[1].number();
@@ -121,49 +121,49 @@ pub(crate) fn apply(op: Op, v: &[Value], rounding: Rounding) -> Value {
     }
 }
 
-/// Place of an operation in its model.
+/// Place in the model that an operation was recorded at.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Origin {
-    /// Purpose, as the model states it for itself and the operations that follow.
+    /// Purpose, as the model states it for this operation and the ones that follow.
     pub stage: Option<&'static str>,
-    /// Line of the source that first asked for it; none for inputs and derivatives.
+    /// Line of the source that first requested the operation; `None` for inputs, constants and derivatives.
     pub line: Option<&'static Location<'static>>,
 }
 
-/// Nodes, none of which occurs twice. Operands come before the nodes that read them.
+/// Graph of nodes, none of which occurs twice. Operands come before the nodes that read them.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     nodes: Vec<Node>,
     origins: Vec<Origin>,
-    /// Stage of the operations that are added.
+    /// Stage that is recorded with the operations that are added next.
     stage: Option<&'static str>,
     known: HashMap<Node, u32>,
 }
 
 impl Graph {
-    /// All nodes.
+    /// Returns all nodes in the order in which they are computed.
     #[must_use]
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 
-    /// Node at a place.
+    /// Returns the node at a place, as [`Node::operands`] and [`Function::results`](crate::Function::results) give it.
     #[must_use]
     pub fn node(&self, place: u32) -> &Node {
         &self.nodes[place as usize]
     }
 
-    /// Place in the model of the node at a place.
+    /// Returns the stage and the line of the model that recorded the node at a place.
     #[must_use]
     pub fn origin(&self, place: u32) -> Origin {
         self.origins[place as usize]
     }
 
-    /// Whether each node is one of these, or read on the way to one of them.
+    /// Returns, for each node, whether the node is at one of these places or is read on the way to one of them.
     ///
     /// # Panics
     ///
-    /// If there is no node at one of these places.
+    /// Panics if the graph has no node at one of these places.
     #[must_use]
     pub fn needed(&self, places: &[u32]) -> Vec<bool> {
         let mut is_needed = vec![false; self.nodes.len()];
@@ -180,12 +180,12 @@ impl Graph {
         is_needed
     }
 
-    /// Sets the stage of operations that are added.
+    /// Sets the stage that is recorded with the operations that are added next.
     pub(crate) fn set_stage(&mut self, sentence: &'static str) {
         self.stage = Some(sentence);
     }
 
-    /// Constant number of the node at a place.
+    /// Returns the number at a place if the node is a constant number.
     #[must_use]
     pub fn number(&self, place: u32) -> Option<f32> {
         match self.node(place).kind {
@@ -194,14 +194,15 @@ impl Graph {
         }
     }
 
-    /// Whether adding the node at a place rounds to an integer: constants from 2^23 on, below 2^24.
+    /// Returns true if adding the node at a place rounds to an integer: it is a constant from 2^23 up to, but below, 2^24.
     #[must_use]
     pub fn rounds(&self, place: u32) -> bool {
         let integers = 8_388_608.0..16_777_216.0;
         self.number(place).is_some_and(|x| integers.contains(&x))
     }
 
-    /// Number that the mask at a place tests: the mask of every number, and not of NaN. It is below one constant, or above a smaller one.
+    /// Returns the place of the number that the mask at a place tests for NaN. Such a mask is set for every number except NaN: it is the
+    /// disjunction of "below one constant" and "above a smaller constant".
     #[must_use]
     pub fn tested_number(&self, place: u32) -> Option<u32> {
         let less = |place: u32| {
@@ -228,7 +229,7 @@ impl Graph {
         }
     }
 
-    /// Adds a node, or finds it.
+    /// Returns the place of an equal node, or adds the node.
     fn push(&mut self, node: Node, origin: Origin) -> u32 {
         if let Some(known) = self.known.get(&node) {
             return *known;
@@ -246,7 +247,7 @@ impl Graph {
         self.push(Node { kind, args: [0; 3] }, Origin::default())
     }
 
-    /// Adds a constant.
+    /// Adds a constant number.
     pub(crate) fn constant(&mut self, x: f32) -> u32 {
         let kind = Kind::Op(Op::Constant(x.to_bits()));
         self.push(Node { kind, args: [0; 3] }, Origin::default())
@@ -257,13 +258,13 @@ impl Graph {
         self.push(Node { kind, args: [0; 3] }, Origin::default())
     }
 
-    /// Adds a node of another graph, whose operands are here at `args`.
+    /// Adds a node of another graph, whose operands are at `args` in this one.
     pub(crate) fn copy(&mut self, node: &Node, args: [u32; 3], origin: Origin) -> u32 {
         let kind = node.kind;
         self.push(Node { kind, args }, origin)
     }
 
-    /// Adds an operation. Constants are computed, and what changes no bit of a number is left out. NaN stays NaN.
+    /// Adds an operation. Constant results are computed, and operations that change no bit of a number are left out. NaN stays NaN.
     pub(crate) fn op(
         &mut self,
         op: Op,
@@ -302,7 +303,7 @@ impl Graph {
         places.iter().map(constant).collect()
     }
 
-    /// Node that has the value of an operation already.
+    /// Returns the node that already has the value of an operation.
     fn folded(&mut self, op: Op, [a, b, c]: [u32; 3]) -> Option<u32> {
         let is = |graph: &Self, place: u32, x: f32| {
             graph.number(place).map(f32::to_bits) == Some(x.to_bits())
@@ -314,7 +315,7 @@ impl Graph {
             Op::Sub if is(self, b, 0.0) => Some(a),
             Op::Add if is(self, b, -0.0) => Some(a),
             Op::Add if is(self, a, -0.0) => Some(b),
-            // No number is at least NaN, nor less.
+            // Comparisons with NaN are false.
             Op::AtLeast | Op::Less
                 if [a, b]
                     .iter()
@@ -343,7 +344,7 @@ thread_local! {
     static GRAPH: RefCell<Graph> = RefCell::default();
 }
 
-/// Recorder into the graph of this thread.
+/// Recorder of operations into the graph of this thread.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Tape {}
 
@@ -356,17 +357,17 @@ impl Recorder for Tape {
     }
 }
 
-/// A lane that is recorded, for a target of this arithmetic.
+/// Lane that records operations, for a target of the arithmetic `A`.
 pub(crate) type Lane<A> = Traced<Tape, A>;
 
-/// The next argument of the function that is recorded.
+/// Adds the next argument of the function that is being recorded.
 pub(crate) fn input<A: Arithmetic>(next: &mut u32) -> Lane<A> {
     let place = *next;
     *next += 1;
     Lane::named(GRAPH.with_borrow_mut(|graph| graph.input(place)))
 }
 
-/// Records `body`. Returns the graph, and the result of `body`.
+/// Records the operations of `body`. Returns the graph, and the result of `body`.
 pub(crate) fn record<T>(body: impl FnOnce() -> T) -> (Graph, T) {
     GRAPH.set(Graph::default());
     let result = body();
@@ -418,7 +419,7 @@ mod tests {
         ] {
             assert_eq!(graph.op(op, args, None), folded, "{op:?} {args:?}");
         }
-        // -0 + 0 is 0, 0 - x is not -x, NaN * 0 is NaN.
+        // These operations change bits: -0 + 0 is 0, 0 - x is not -x, and NaN * 0 is NaN.
         for (op, args) in [
             (Op::Add, [x, zero, 0]),
             (Op::Sub, [x, minus_zero, 0]),

@@ -1,6 +1,6 @@
-//! The models of hairis as source of other languages.
+//! Translates the scattering models of hairis into source code of other languages.
 //!
-//! A [`Model`](hairis::model::Model) is run once on lanes that record. The graph that it leaves is a [`Function`], which
+//! A [`Model`](hairis::model::Model) is run once on lanes that record its operations. The recorded graph is a [`Function`], which
 //! computes the bits of one lane, is printed in a [`Language`], and has a [`gradient`](Function::gradient).
 //!
 //! ```

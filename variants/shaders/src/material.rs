@@ -1,4 +1,4 @@
-//! Materials from parameters.
+//! Computation of materials from parameters.
 
 use crate::call::Call;
 use crate::function::{Argument, Function};
@@ -9,13 +9,13 @@ use hairis::simd::Lanes;
 use hairis::simd::trace::Arithmetic;
 use hairis_variants::{Kind, Parameters, Registered, Values};
 
-/// The fields that have a value: others may stand for one of them.
+/// Returns the fields that have a value, with their places. A field without a value may be an alternative to one of these.
 fn kept(values: &Values) -> impl Iterator<Item = (usize, &'static hairis_variants::Field)> {
     let places = values.fields().iter().enumerate();
     places.filter(|(place, _)| values.has_at(*place))
 }
 
-/// Layout of the parameters: fields have the names of `hairis eval`.
+/// Returns the layout of the parameters, whose fields have the names that `hairis eval` uses.
 pub(crate) fn params<P: Parameters>() -> Record {
     let defaults = P::default().values();
     let fields = kept(&defaults).map(|(_, field)| {
@@ -46,7 +46,7 @@ pub(crate) fn params<P: Parameters>() -> Record {
     }
 }
 
-/// The numbers that [`Call::Material`] reads: those of the fields that have a value.
+/// Returns the numbers that [`Call::Material`] reads: the numbers of all fields that have a value, in order.
 #[must_use]
 pub fn parameters(values: &Values) -> Vec<f32> {
     kept(values)
@@ -54,7 +54,7 @@ pub fn parameters(values: &Values) -> Vec<f32> {
         .collect()
 }
 
-/// [`Call::Material`] of a model of the list.
+/// Traces [`Call::Material`] of a model of the list.
 pub(crate) fn material<M: Registered, A: Arithmetic>(output: &Record) -> Function {
     let params = params::<M::Params>();
     let (graph, results) = record(|| {

@@ -1,4 +1,4 @@
-//! Source of a program in other languages: one visitor, and a table of operations per language.
+//! Source text of a program in other languages: one visitor for all, and a table of operations per language.
 
 mod driver;
 mod operations;
@@ -16,31 +16,31 @@ use operations::{Form, template, write_template};
 use std::collections::HashSet;
 use syntax::head;
 
-/// A language that programs are printed in.
+/// Language in which programs are printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Language {
     /// C99, C++, CUDA and `OpenCL` C, in one header.
     C,
-    /// WGSL, of WebGPU.
+    /// WGSL, the shading language of WebGPU.
     Wgsl,
     /// GLSL from version 4.00 or 3.20 ES.
     Glsl,
     /// HLSL from shader model 5.
     Hlsl,
-    /// The Metal shading language.
+    /// Metal shading language.
     Msl,
 }
 
 impl Language {
-    /// Every language.
+    /// Every language in which programs are printed.
     pub const ALL: [Self; 5] = [Self::C, Self::Wgsl, Self::Glsl, Self::Hlsl, Self::Msl];
 
-    /// Whether compilers may take sums apart, and the language has no word against it.
+    /// Returns true if compilers may reassociate sums, and the language has no keyword that forbids it.
     const fn takes_sums_apart(self) -> bool {
         matches!(self, Self::Wgsl | Self::Msl)
     }
 
-    /// Type of a form of field, and what follows its name.
+    /// Returns the type of a form of field, and the text that follows the field's name.
     fn shape(self, shape: Shape) -> (String, String) {
         match (self, shape) {
             (Self::Wgsl, Shape::Number) => ("f32".to_owned(), String::new()),
@@ -60,20 +60,21 @@ impl Language {
         }
     }
 
-    /// A number or a mask that is not assigned again.
+    /// Returns the beginning of a declaration of a number or a mask that is not assigned again.
     fn binding(self, is_mask: bool) -> &'static str {
         match (self, is_mask) {
             (Self::Wgsl, _) => "let",
             (Self::C, true) => "const int",
             (Self::C | Self::Msl, false) => "const float",
             (Self::Msl, true) => "const bool",
-            // Compilers keep the order of arithmetic whose results are precise.
+            // Compilers keep the order of arithmetic whose results are declared precise.
             (Self::Glsl | Self::Hlsl, false) => "precise float",
             (Self::Glsl | Self::Hlsl, true) => "bool",
         }
     }
 
-    /// A number as a literal that every compiler reads as this very float. None has one of infinity or NaN.
+    /// Returns a number as a literal that every compiler reads as exactly this float. Infinity and NaN have no literal in any language,
+    /// so that a helper makes them from their bits.
     fn literal(self, x: f32, prefix: &str) -> String {
         if !x.is_finite() {
             return format!("{prefix}number(0x{:08x}u)", x.to_bits());
@@ -83,16 +84,16 @@ impl Language {
         if is_exact && !short.contains('e') {
             format!("{short}f")
         } else if self == Self::Wgsl {
-            // Decimal digits above those of the largest float are refused there.
+            // WGSL rejects decimal literals above the largest float, even if they round to it.
             hexadecimal(x)
         } else {
-            // Nine digits, as fewer could be rounded twice.
+            // Fewer than nine digits could be rounded twice.
             format!("{x:.8e}f")
         }
     }
 }
 
-/// Digits of a normal number to the base 16.
+/// Returns a hexadecimal literal of a finite number.
 fn hexadecimal(x: f32) -> String {
     let (sign, bits) = (if x < 0.0 { "-" } else { "" }, x.abs().to_bits());
     if bits >> 23 == 0 {
@@ -105,12 +106,12 @@ fn hexadecimal(x: f32) -> String {
     format!("{sign}0x1{dot}{fraction}p{exponent:+}f")
 }
 
-/// Names that begin as the model's: `hairis_gaussian_`.
+/// Returns the beginning of all names of the model: `hairis_gaussian_`.
 fn prefix(program: &Program) -> String {
     format!("hairis_{}_", program.name())
 }
 
-/// Name of a type: `HairisGaussianMaterial`.
+/// Returns the name of the type of a record: `HairisGaussianMaterial`.
 fn type_name(program: &Program, record: &Record) -> String {
     let name = format!("hairis_{}_{}", program.name(), record.name);
     let capital = |word: &str| {
@@ -120,7 +121,7 @@ fn type_name(program: &Program, record: &Record) -> String {
     name.split('_').map(capital).collect()
 }
 
-/// Prints a program: its types, materials and functions, which need no other file.
+/// Prints a program as source text: its types, materials and functions, which need no other file.
 #[must_use]
 pub fn print(program: &Program, language: Language) -> String {
     let mut out = head(program, language);
@@ -179,8 +180,8 @@ fn declare(out: &mut String, program: &Program, language: Language, record: &Rec
     out.push_str("\n\n");
 }
 
-/// Comment on an operation: its stage, or the file of the model, as `hair/view.rs`; none for vectors and choices, which belong to
-/// the operations around them.
+/// Returns the comment on an operation: its stage, or the file of the model, such as `hair/view.rs`. Vectors and choices have none,
+/// because they belong to the operations around them.
 fn comment(origin: Origin) -> Option<String> {
     if let Some(stage) = origin.stage {
         return Some(stage.to_owned());
@@ -193,7 +194,7 @@ fn comment(origin: Origin) -> Option<String> {
     (!is_part).then(|| file.to_owned())
 }
 
-/// A function that is printed.
+/// Function that is being printed.
 struct Body<'a> {
     program: &'a Program,
     language: Language,
@@ -279,7 +280,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Arguments that the function does not read: a model of the far field does not read `h`.
+    /// Returns the arguments that the function does not read: a model of the far field does not read `h`.
     fn unused(&self) -> Vec<&str> {
         let nodes = self.function.graph().nodes();
         let mut unused = Vec::new();
@@ -296,13 +297,13 @@ impl<'a> Body<'a> {
         unused
     }
 
-    /// Number that the mask at a place tests, in languages whose drivers ignore NaN in comparisons.
+    /// Returns the number that the mask at a place tests for NaN, in languages whose drivers ignore NaN in comparisons.
     fn tested(&self, place: u32) -> Option<u32> {
         let tested = self.function.graph().tested_number(place);
         tested.filter(|_| self.language != Language::C)
     }
 
-    /// Numbers and masks that the text of a value reads.
+    /// Returns the places of the numbers and masks that the text of a value reads.
     fn operands(&self, place: u32) -> Vec<u32> {
         match self.tested(place) {
             Some(tested) => vec![tested],

@@ -1,4 +1,4 @@
-//! The functions of a model.
+//! Programs: all functions of a model, with the records that they take and return.
 
 use crate::call::{Call, Target};
 use crate::function::{Argument, Function};
@@ -12,7 +12,7 @@ use hairis::simd::trace::{Arithmetic, Exact, Fused, Gpu, GpuNative, Op};
 use hairis::simd::{LaneStruct, Lanes, Path, Vec3x};
 use hairis_variants::{ModelId, Parameters, Registered, Visitor};
 
-/// A model's functions and records, for one target.
+/// Functions and records of a model, traced for one target.
 #[derive(Clone, Debug)]
 pub struct Program {
     name: String,
@@ -20,9 +20,9 @@ pub struct Program {
     material: Record,
     prepared: Record,
     functions: Vec<Function>,
-    /// Functions of parameters, which have no argument.
+    /// Functions that return the parameters of a preset, and have no argument.
     presets: Vec<Function>,
-    /// Functions of materials, which have no argument.
+    /// Functions that return a material, and have no argument.
     materials: Vec<Function>,
 }
 
@@ -55,8 +55,8 @@ impl Program {
         program
     }
 
-    /// As [`of`](Self::of), for an entry of the list that is chosen at run time. Tracing is a large function per model: it is
-    /// compiled here, and not in each crate that calls.
+    /// Traces a model of the list that is chosen at run time, as [`of`](Self::of) does for a type. Tracing is a large function per model,
+    /// so that it is compiled in this crate and not in each crate that calls it.
     #[must_use]
     pub fn of_id(id: ModelId, target: Target) -> Self {
         struct Trace(Target);
@@ -69,7 +69,7 @@ impl Program {
         id.visit(Trace(target))
     }
 
-    /// Traces any model, under a name that is an identifier in C.
+    /// Traces any model, under a name that is an identifier in C. The program has neither [`Call::Material`] nor presets.
     #[must_use]
     pub fn trace<M: Model>(name: &str, target: Target) -> Self {
         match target {
@@ -104,41 +104,41 @@ impl Program {
         }
     }
 
-    /// Name of the model.
+    /// Returns the name of the model, which begins the names of all printed functions.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Arithmetic of the target.
+    /// Returns the target that the program was traced for.
     #[must_use]
     pub const fn target(&self) -> Target {
         self.target
     }
 
-    /// Layout of a material: what a host uploads, and in which order.
+    /// Returns the layout of a material: the numbers that a host uploads, in their order.
     #[must_use]
     pub const fn material(&self) -> &Record {
         &self.material
     }
 
-    /// Layout of a shading point.
+    /// Returns the layout of a shading point, which [`Call::Prepare`] returns.
     #[must_use]
     pub const fn prepared(&self) -> &Record {
         &self.prepared
     }
 
-    /// The functions, in the order of their output.
+    /// Returns the functions in the order in which they are printed.
     #[must_use]
     pub fn functions(&self) -> &[Function] {
         &self.functions
     }
 
-    /// The function `call`.
+    /// Returns the function `call` of the program.
     ///
     /// # Panics
     ///
-    /// If [`keep`](Self::keep) removed it, or it is [`Call::Material`] of a model that is not in the list.
+    /// Panics if [`keep`](Self::keep) removed the function, or if it is [`Call::Material`] of a model that is not in the list.
     #[must_use]
     pub fn function(&self, call: Call) -> &Function {
         let is_called = |function: &&Function| function.name() == call.name();
@@ -146,12 +146,13 @@ impl Program {
         function.expect("a program has every call until some are removed")
     }
 
-    /// Replaces the functions.
+    /// Replaces the functions of the program, for example by fewer or by their gradients.
     pub fn keep(&mut self, functions: Vec<Function>) {
         self.functions = functions;
     }
 
-    /// Functions of the presets' parameters by name, which have no argument: none without [`Call::Material`], which reads them.
+    /// Returns the functions of the presets' parameters by name, which have no argument. They are left out without [`Call::Material`],
+    /// which reads the parameters.
     #[must_use]
     pub fn presets(&self) -> &[Function] {
         let reads = |function: &Function| function.name() == Call::Material.name();
@@ -162,19 +163,19 @@ impl Program {
         }
     }
 
-    /// Functions of materials by name, which have no argument: the presets, and those of
+    /// Returns the functions of materials by name, which have no argument: the presets, and the materials of
     /// [`add_material`](Self::add_material).
     #[must_use]
     pub fn materials(&self) -> &[Function] {
         &self.materials
     }
 
-    /// Adds a material under a name that is an identifier in C, by its numbers in the order of [`material`](Self::material).
-    /// Replaces the material of that name, if any.
+    /// Adds a material under a name that is an identifier in C, given by its numbers in the order of [`material`](Self::material). A
+    /// material that already has this name is replaced.
     ///
     /// # Panics
     ///
-    /// If they are not as many as those of a material.
+    /// Panics if the count of the numbers differs from that of a material.
     pub fn add_material(&mut self, name: &str, numbers: &[f32]) {
         assert_eq!(numbers.len(), self.material.len(), "numbers of a material");
         let name = format!("material_{name}");
@@ -183,8 +184,8 @@ impl Program {
         self.materials.push(material);
     }
 
-    /// Version of the layout: a hash (FNV-1a, 32 bits) of names and order of the numbers of a material and of a shading point.
-    /// Code that uploads numbers compares it with that of the source it was written for.
+    /// Returns the version of the layout: a hash (FNV-1a, 32 bits) of names and order of the numbers of a material and of a shading
+    /// point. Code that uploads numbers compares it with the version in the source that it was written for.
     #[must_use]
     pub fn layout(&self) -> u32 {
         let records = [&self.material, &self.prepared];
@@ -197,14 +198,14 @@ impl Program {
     }
 }
 
-/// A function without arguments that returns a record of these numbers.
+/// Makes a function without arguments that returns a record of these numbers.
 fn constants(name: String, record: &Record, numbers: &[f32]) -> Function {
     let mut graph = Graph::default();
     let results: Vec<u32> = numbers.iter().map(|x| graph.constant(*x)).collect();
     Function::new(name, Vec::new(), record.clone(), &graph, &results)
 }
 
-/// A struct of the next arguments.
+/// Makes a struct of lanes whose numbers are the next arguments.
 fn lanes<S: LaneStruct<Number = Lane<A>>, A: Arithmetic>(next: &mut u32) -> S {
     S::make(&Path::Root, &mut |_| input(next))
 }
@@ -249,7 +250,7 @@ fn sample<A: Arithmetic>(sample: SampleLanes<Lane<A>>) -> Vec<Lane<A>> {
     ]
 }
 
-/// Type of a call's result.
+/// Returns the layout of the result of a call.
 fn output<M: Model>(call: Call, prepared: &Record) -> Record {
     let lobes = M::LOBES.len();
     match call {
@@ -342,9 +343,10 @@ fn function<M: Model, A: Arithmetic>(call: Call, material: &Record, prepared: &R
     Function::new(call.name().to_owned(), arguments, output, &graph, &results)
 }
 
-/// A program whose one function has each operation alone: `MulAdd`, `Exp2` and `Log2` with [`Target::GpuNative`] alone.
+/// Makes a program whose one function computes each operation alone: `MulAdd` except with [`Target::Exact`], and `Exp2` and `Log2` only
+/// with [`Target::GpuNative`].
 ///
-/// For tests of printers. Masks are 1 and 0 in the result.
+/// Serves tests of printers. Masks are 1 and 0 in the result.
 #[doc(hidden)]
 #[must_use]
 pub fn every_operation(target: Target) -> Program {
@@ -354,7 +356,7 @@ pub fn every_operation(target: Target) -> Program {
     let magic = graph.constant(8_388_608.0 + 115.0);
     let [least, most] = [-100.0, 100.0].map(|x| graph.constant(x));
     let mut op = |op: Op, args: [u32; 3]| graph.op(op, args, None);
-    // Exponents.
+    // Exponents stay in the range in which adding `magic` gives a biased exponent.
     let near = op(Op::Min, [a, most, 0]);
     let near = op(Op::Max, [near, least, 0]);
     let (m, n) = (op(Op::Less, [a, b, 0]), op(Op::AtLeast, [b, c, 0]));
@@ -419,7 +421,7 @@ mod tests {
     use super::*;
     use crate::graph::Rounding;
 
-    /// Names are an interface: code that uploads numbers by their place has to notice that one has another meaning.
+    /// Names are part of the interface: code that uploads numbers by their place has to notice that a number has another meaning.
     #[test]
     fn a_renamed_number_is_another_layout() {
         let program = Program::of::<hairis_variants::KajiyaKay>(Target::Exact);
@@ -431,7 +433,8 @@ mod tests {
         assert_ne!(swapped.layout(), program.layout());
     }
 
-    /// A difference of products keeps its digits where products with sums round twice. That of levels that fuse does not.
+    /// A difference of products recorded for GPUs keeps its digits even if `MulAdd` rounds twice; one recorded for levels that fuse does
+    /// not.
     #[test]
     fn differences_of_products_survive_split_fma() {
         fn difference<A: Arithmetic>(factors: [f32; 4], rounding: Rounding) -> f32 {

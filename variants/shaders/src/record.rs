@@ -1,26 +1,26 @@
-//! Records of numbers: the layout of materials, of shading points, and of results.
+//! Records of numbers: the layout of materials, of shading points and of results.
 
 use hairis::simd::{LaneStruct, Path, Scalar};
 
-/// Form of a field.
+/// Form of a field of a record: a number, a vector or an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
-    /// One number.
+    /// A single number.
     Number,
     /// Three numbers, `x`, `y` and `z`: a direction, a colour, or uniform numbers.
     Vector,
-    /// An array of that many numbers.
+    /// An array with the given length.
     Array(usize),
 }
 
-/// A named part of a record.
+/// Named part of a record, which holds one number, a vector or an array.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Field {
-    /// Name: fields of structs within structs are joined by underscores.
+    /// Name of the field. Fields of nested structs are joined by underscores.
     pub name: String,
-    /// Form.
+    /// Form of the field, which determines how many numbers the field holds.
     pub shape: Shape,
-    /// Meaning, where the name does not say it.
+    /// Meaning of the field, or an empty string if the name says it.
     pub doc: String,
 }
 
@@ -31,7 +31,7 @@ impl Field {
         Self { name, shape, doc }
     }
 
-    /// Count of its numbers.
+    /// Returns the number of numbers that the field holds: three for a vector, and the length of an array.
     #[must_use]
     pub fn len(&self) -> usize {
         match self.shape {
@@ -41,13 +41,13 @@ impl Field {
         }
     }
 
-    /// Whether it has no number.
+    /// Returns true if the field holds no number, as an empty array does.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Each of its numbers, as every language writes it: `pdf`, `wi.x`, `lobes_alpha[2]`.
+    /// Returns the name of each number of the field as every language writes it: `pdf`, `wi.x`, `lobes_alpha[2]`.
     pub fn places(&self) -> impl Iterator<Item = String> + '_ {
         let name = &self.name;
         (0..self.len()).map(move |i| match self.shape {
@@ -61,9 +61,9 @@ impl Field {
 /// Fields in a fixed order. In memory their numbers follow each other, four bytes each, unless the record has vectors.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Record {
-    /// Name of the type: `material`, `prepared`, `eval`.
+    /// Name of the record, from which the name of the printed type is formed: `material`, `prepared`, `eval`.
     pub name: String,
-    /// The fields.
+    /// Fields in the order in which the printed type declares them.
     pub fields: Vec<Field>,
 }
 
@@ -78,7 +78,7 @@ impl Record {
         }
     }
 
-    /// Layout and numbers of a struct of lanes.
+    /// Returns the layout of a struct of lanes, and its numbers in the order of that layout.
     pub(crate) fn of<S: LaneStruct>(name: &str, lanes: &S) -> (Self, Vec<S::Number>) {
         let (mut fields, mut numbers) = (Vec::<Field>::new(), Vec::new());
         lanes.visit(&Path::Root, &mut |path, number| {
@@ -98,26 +98,26 @@ impl Record {
         (Self { name, fields }, numbers)
     }
 
-    /// Count of its numbers.
+    /// Returns the number of numbers in all fields of the record.
     #[must_use]
     pub fn len(&self) -> usize {
         self.fields.iter().map(Field::len).sum()
     }
 
-    /// Whether it has no number.
+    /// Returns true if none of the fields holds a number.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Each of its numbers, as every language writes it.
+    /// Returns the name of each number of the record in order, as every language writes it.
     pub fn places(&self) -> impl Iterator<Item = String> + '_ {
         self.fields.iter().flat_map(Field::places)
     }
 }
 
-/// Name of the field of a number, and whether it is an entry of an array. Arrays of arrays are one array; entries that are
-/// structs are named by their index.
+/// Returns the name of the field that a number belongs to, and whether the number is an entry of an array. Arrays of arrays are flattened
+/// to one array; array entries that are structs are named by their index.
 fn field(path: &Path<'_>) -> (String, bool) {
     match *path {
         Path::Root => (String::new(), false),
@@ -134,7 +134,7 @@ fn join(parent: &Path<'_>, name: &str) -> String {
     }
 }
 
-/// The numbers of a struct, in the order of its record: what a host uploads.
+/// Returns the numbers of a struct in the order of its record, which is the order in which a host uploads them.
 #[must_use]
 pub fn numbers<S: LaneStruct<Number = C>, C: Scalar>(lanes: &S) -> Vec<C> {
     Record::of("", lanes).1

@@ -1,4 +1,4 @@
-//! SPIR-V, which can say that arithmetic keeps its order.
+//! SPIR-V modules, which can require that arithmetic keeps its order.
 
 use crate::call::Target;
 use crate::print::{Language, driver, print};
@@ -7,11 +7,11 @@ use naga::back::spv;
 use naga::front::wgsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-/// Checks a module of WGSL, and translates it.
+/// Validates a WGSL module, and translates it to SPIR-V.
 ///
 /// # Errors
 ///
-/// In words, if naga rejects it.
+/// Returns naga's message if naga rejects the module.
 pub fn translate(source: &str) -> Result<Vec<u32>, String> {
     let module = wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
@@ -21,14 +21,15 @@ pub fn translate(source: &str) -> Result<Vec<u32>, String> {
     spv::write_vec(&module, &info, &options, None).map_err(|error| error.to_string())
 }
 
-/// A compute shader per function of the program, which compilers may not rearrange: see [`driver`].
+/// Makes a SPIR-V module with one compute shader per function of the program, whose arithmetic compilers may not rearrange. The buffers
+/// are described at [`driver`].
 ///
-/// With [`Target::Exact`] and [`Target::Fused`] results have the bits that these promise: the module asks for
-/// [IEEE's numbers](keep_numbers), and square roots are corrected.
+/// With [`Target::Exact`] and [`Target::Fused`], results have the bits that these targets promise: the module requires [IEEE
+/// arithmetic](keep_numbers), and square roots are corrected.
 ///
 /// # Errors
 ///
-/// In words, if naga rejects the program.
+/// Returns naga's message if naga rejects the program.
 pub fn module(program: &Program) -> Result<Vec<u32>, String> {
     let mut source = print(program, Language::Wgsl);
     source += &driver(program, Language::Wgsl);
@@ -43,8 +44,9 @@ pub fn module(program: &Program) -> Result<Vec<u32>, String> {
     Ok(words)
 }
 
-/// The square root that is nearest, from one that is a unit in the last place off, as GPUs have it. The rest `x - s^2` is exact, and
-/// beyond `s` times the distance of a neighbour where that is nearer. Numbers are scaled, so that no part of Dekker's product is denormal.
+/// Correctly rounded square root, computed from one that is a unit in the last place off, as on GPUs. The rest `x - s^2` is exact, and it
+/// exceeds `s` times the distance of a neighbour if that neighbour is nearer. Numbers are scaled so that no part of Dekker's product is
+/// denormal.
 const SQUARE_ROOT: &str = "
 fn hairis_sqrt(a: f32) -> f32 {
     let up = a < 0x1p-40f;
@@ -63,7 +65,7 @@ fn hairis_sqrt(a: f32) -> f32 {
 }
 ";
 
-/// Words before the first instruction.
+/// Number of words before the first instruction of a module.
 const HEADER: usize = 5;
 const OP_EXTENSION: u32 = 10;
 const OP_ENTRY_POINT: u32 = 15;
@@ -72,11 +74,11 @@ const OP_CAPABILITY: u32 = 17;
 const OP_DECORATE: u32 = 71;
 const OP_MEMBER_DECORATE: u32 = 72;
 const NO_CONTRACTION: u32 = 42;
-/// `OpFNegate`, `OpFAdd`, `OpFSub`, `OpFMul`, `OpFDiv`.
+/// Opcodes of `OpFNegate`, `OpFAdd`, `OpFSub`, `OpFMul` and `OpFDiv`.
 const ARITHMETIC: [u32; 5] = [127, 129, 131, 133, 136];
 
-/// Adds the decoration `NoContraction` to every arithmetic instruction: its result is that of the instruction alone. Drivers
-/// then neither fuse nor reassociate.
+/// Adds the decoration `NoContraction` to every arithmetic instruction, so that drivers neither fuse nor reassociate. Each instruction
+/// then has the result that it would have alone.
 pub fn keep_order(words: &mut Vec<u32>) {
     let (mut at, mut end, mut decorations) = (HEADER, HEADER, Vec::new());
     while at < words.len() {
@@ -92,13 +94,13 @@ pub fn keep_order(words: &mut Vec<u32>) {
     words.splice(end..end, decorations);
 }
 
-/// Capabilities and execution modes: `DenormPreserve`, `SignedZeroInfNanPreserve`, `RoundingModeRTE`.
+/// Capabilities and execution modes of `DenormPreserve`, `SignedZeroInfNanPreserve` and `RoundingModeRTE`.
 const CONTROLS: [[u32; 2]; 3] = [[4464, 4459], [4466, 4461], [4467, 4462]];
 
-/// Asks for IEEE's numbers in every entry point: denormals, NaN, infinity and the sign of 0 are kept, and results round to nearest, those
-/// of divisions as well on drivers that would otherwise approximate them.
+/// Requires IEEE arithmetic in every entry point. Denormals, NaN, infinity and the sign of 0 are kept, and results round to nearest, even
+/// those of divisions on drivers that would otherwise approximate them.
 ///
-/// The module then needs `SPV_KHR_float_controls` and, by Vulkan's rules, a device that reports `shaderDenormPreserveFloat32`,
+/// The module then needs `SPV_KHR_float_controls`. By Vulkan's rules it also needs a device that reports `shaderDenormPreserveFloat32`,
 /// `shaderSignedZeroInfNanPreserveFloat32` and `shaderRoundingModeRTEFloat32`.
 pub fn keep_numbers(words: &mut Vec<u32>) {
     let mut out = words[..HEADER].to_vec();

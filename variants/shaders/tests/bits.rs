@@ -1,4 +1,4 @@
-//! The graph has the bits of the model.
+//! Tests that the graph has the bits of the model.
 
 use crate::support::{Case, case_count, differing, every_model, fusing_level};
 use hairis_shaders::{Call, Program, Rounding, Target};
@@ -62,7 +62,7 @@ fn fused_graphs_have_the_bits_of_a_level_that_fuses() {
     every_model!(check_fusing_level);
 }
 
-/// `only` leaves the bits of what it keeps, for fewer operations.
+/// `Function::only` keeps the bits of the remaining fields, and takes fewer operations.
 #[test]
 fn fewer_results_take_fewer_operations() {
     let id = ModelId::find("gaussian", Some("matched")).expect("a model of the list");

@@ -1,4 +1,4 @@
-//! The header compiles without warnings as C and C++, and has the bits of one lane.
+//! Tests that the header compiles without warnings as C and C++, and has the bits of one lane.
 
 use crate::gradients::Weighted;
 use crate::support::{
@@ -15,7 +15,7 @@ use tempfile::TempDir;
 /// Warnings that a host may have switched on.
 const STRICT: &[&str] = &["-pedantic", "-Wall", "-Wextra", "-Werror"];
 
-/// Warnings of nvcc and of its host's compiler, without those about code that nvcc writes.
+/// Warnings of nvcc and of its host compiler, without the warnings about code that nvcc itself writes.
 const NVCC_STRICT: &[&str] = &["-Werror", "all-warnings", "-Xcompiler", "-Wall,-Wextra"];
 
 pub(crate) fn exists(compiler: &str) -> bool {
@@ -27,7 +27,7 @@ pub(crate) fn exists(compiler: &str) -> bool {
     found
 }
 
-/// Compiles a file with all warnings as errors; by nvcc as CUDA.
+/// Compiles a file with all warnings as errors; with nvcc, as CUDA.
 pub(crate) fn compile(
     dir: &Path,
     source: &str,
@@ -57,7 +57,7 @@ pub(crate) fn compile(
     }
 }
 
-/// Results of a compiled driver.
+/// Runs a compiled driver on these inputs, and returns its results.
 pub(crate) fn run(program: &Path, function: &str, inputs: &[f32]) -> Vec<f32> {
     let mut child = Command::new(program)
         .arg(function)
@@ -67,7 +67,7 @@ pub(crate) fn run(program: &Path, function: &str, inputs: &[f32]) -> Vec<f32> {
         .expect("the program starts");
     let bytes: Vec<u8> = inputs.iter().flat_map(|x| x.to_le_bytes()).collect();
     let mut stdin = child.stdin.take().expect("standard input is a pipe");
-    // The program reads all before it writes.
+    // The program reads all of its input before it writes.
     stdin.write_all(&bytes).expect("the program reads");
     drop(stdin);
     let output = child.wait_with_output().expect("the program ends");
@@ -79,7 +79,7 @@ pub(crate) fn run(program: &Path, function: &str, inputs: &[f32]) -> Vec<f32> {
         .collect()
 }
 
-/// The driver of a program by gcc, without contraction, in a folder of its own. `None` if there is no gcc.
+/// Compiles the driver of a program by gcc, without contraction, in a new folder. Returns `None` if gcc is not installed.
 pub(crate) fn compiled(program: &Program) -> Option<(TempDir, PathBuf)> {
     if !exists("gcc") {
         return None;
@@ -90,7 +90,8 @@ pub(crate) fn compiled(program: &Program) -> Option<(TempDir, PathBuf)> {
     Some((dir, binary))
 }
 
-/// The driver of a program in Metal by g++, which finds Metal's operations beside the tests. `None` if there is no g++.
+/// Compiles the driver of a program in Metal by g++, with Metal's operations from a header in this folder. Returns `None` if g++ is not
+/// installed.
 pub(crate) fn compiled_metal(program: &Program) -> Option<(TempDir, PathBuf)> {
     if !exists("g++") {
         return None;
@@ -109,7 +110,7 @@ pub(crate) fn source(program: &Program) -> String {
     print(program, Language::C) + &driver(program, Language::C)
 }
 
-/// Cases of each call that differ from one lane in a bit.
+/// Returns the number of cases, over all calls, that differ from one lane in a bit.
 fn differences<M: Registered>(program: &Program, binary: &Path, cases: &[Case<M>]) -> usize {
     let mut differ = 0;
     for call in Call::ALL {
@@ -165,7 +166,7 @@ fn clang_has_the_bits_of_one_lane() {
     bits("clang", &["-std=c99", "-O2"]);
 }
 
-/// Clang contracts by default where the machine fuses. The header's pragma forbids it.
+/// Clang contracts by default if the machine has fused instructions, but the pragma in the header forbids it.
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn clang_keeps_products_and_sums_apart() {
@@ -203,7 +204,7 @@ fn gradients_in_c_have_the_bits_of_the_graph() {
     every_model!(check_gradients);
 }
 
-/// The control: what contraction does is found.
+/// Control: the comparison detects contraction.
 #[test]
 fn contraction_is_found() {
     struct Contracted;
@@ -245,7 +246,7 @@ fn fast_math_is_refused() {
     }
 }
 
-/// The example of the README, as a user without Rust compiles it.
+/// The example of the README runs as a user without Rust compiles it.
 #[test]
 fn the_example_of_the_readme_runs() {
     if !exists("gcc") {
@@ -274,12 +275,12 @@ fn the_example_of_the_readme_runs() {
         let [r, _, _, pdf, weight, ..] = numbers[..] else {
             panic!("seven numbers, got {text}")
         };
-        // value * cos theta_i / pdf.
+        // The weight is value * cos theta_i / pdf.
         assert!(r > 0.0 && pdf > 0.0 && weight <= 1.001 * r / pdf, "{text}");
     }
 }
 
-/// Two models in one file, and materials by name.
+/// Two models share a file, and have functions for their materials by name.
 #[test]
 fn headers_share_a_file_and_have_materials() {
     if !exists("gcc") {

@@ -1,4 +1,4 @@
-//! The header on an NVIDIA GPU, compiled by nvcc.
+//! Tests of the header on an NVIDIA GPU, compiled by nvcc.
 
 use crate::c::{compile, exists, run, source};
 use crate::gradients::Weighted;
@@ -9,10 +9,10 @@ use hairis_variants::{Registered, Visitor};
 use std::path::PathBuf;
 use tempfile::TempDir;
 
-/// Flags with which products and sums round apart.
+/// Flags that make products and sums round separately.
 pub(crate) const APART: &[&str] = &["-fmad=false"];
 
-/// The driver of a program for this machine's GPU, in a folder of its own.
+/// Compiles the driver of a program for the GPU of this machine, in a new folder.
 pub(crate) fn compiled(program: &Program, flags: &[&str]) -> (TempDir, PathBuf) {
     let dir = TempDir::new().expect("a folder for the program");
     let flags = [&["-arch=native"], flags].concat();
@@ -21,7 +21,7 @@ pub(crate) fn compiled(program: &Program, flags: &[&str]) -> (TempDir, PathBuf) 
     (dir, binary)
 }
 
-/// Whether there are nvcc and a GPU.
+/// Returns true if nvcc and a GPU are available.
 pub(crate) fn has_gpu() -> bool {
     exists("nvcc") && exists("nvidia-smi")
 }
@@ -32,7 +32,7 @@ fn every_model_on_a_gpu<V: Visitor + Copy>(visitor: V) {
     }
 }
 
-/// A program whose compiler is told to keep products and sums apart.
+/// Comparison with the bits of one lane, for a compiler that keeps products and sums separate.
 #[derive(Clone, Copy)]
 struct Apart<'a>(Target, &'a Tally);
 
@@ -61,7 +61,7 @@ impl Visitor for Apart<'_> {
             };
             let inputs: Vec<f32> = arguments().flatten().collect();
             let got = run(&binary, function.name(), &inputs);
-            // NaN has another sign on a GPU, and a shading point may have it as that of a 0.
+            // NaN has another sign on a GPU, and in a shading point a 0 may have taken its sign from it.
             let read = |x| match call {
                 Call::Prepare => unsigned(x),
                 _ => x,
@@ -95,7 +95,7 @@ fn fused_cuda_has_the_bits_of_a_level_that_fuses() {
     check_apart(Target::Fused);
 }
 
-/// Programs whose last digits are those of the compiler.
+/// Comparison with double precision, for flags that leave the last digits to the compiler.
 #[derive(Clone, Copy)]
 struct Accuracy(&'static [&'static str]);
 
@@ -118,14 +118,14 @@ impl Visitor for Accuracy {
     }
 }
 
-/// Nvcc contracts unless told otherwise.
+/// By default nvcc contracts products and sums.
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn cuda_has_the_accuracy_of_one_lane() {
     every_model_on_a_gpu(Accuracy(&[]));
 }
 
-/// Fast math of nvcc flushes denormals, and takes approximate quotients and roots, but keeps NaN and the order of sums.
+/// Fast math of nvcc flushes denormals and approximates quotients and roots, but keeps NaN and the order of sums.
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn fast_cuda_has_the_accuracy_of_one_lane() {
@@ -148,7 +148,7 @@ impl Visitor for Gradients {
                 let name = format!("{} {} in CUDA {flags:?}", program.name(), gradient.name());
                 let got = run(&binary, gradient.name(), &cases.all.concat());
                 if flags == APART {
-                    // The sign of a 0 may be that of a NaN.
+                    // A 0 may have taken its sign from a NaN.
                     cases.check_bits(&got, Rounding::Once, unsigned, &name);
                 }
                 cases.check(&got, &name);

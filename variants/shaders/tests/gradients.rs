@@ -1,10 +1,10 @@
-//! Gradients against differences in double precision, and at the edges.
+//! Tests of gradients against differences in double precision, and at the edges.
 
 use crate::support::{Case, Random, differing, every_model, same, visit_every_model};
 use hairis_shaders::{Call, Function, Program, Rounding, Target};
 use hairis_variants::{Registered, Visitor};
 
-/// Derivative of the weighted results to the input at `place`, where no choice changes within a step.
+/// Returns the derivative of the weighted results by the input at `place`, or `None` if a choice changes within the step.
 fn difference(function: &Function, inputs: &[f64], weights: &[f32], place: usize) -> Option<f64> {
     let step = 1e-6 * inputs[place].abs().max(0.03);
     let at = |by: f64| {
@@ -27,9 +27,9 @@ fn difference(function: &Function, inputs: &[f64], weights: &[f32], place: usize
 pub(crate) struct Weighted {
     pub(crate) function: Function,
     pub(crate) gradient: Function,
-    /// Away from the edges.
+    /// Inputs away from the edges.
     pub(crate) inputs: Vec<Vec<f32>>,
-    /// These, and after them everything that a host may pass.
+    /// Inputs away from the edges, followed by everything that a host may pass.
     pub(crate) all: Vec<Vec<f32>>,
 }
 
@@ -55,7 +55,7 @@ impl Weighted {
         }
     }
 
-    /// Cases of a material and of a hit, whose gradients alone the program keeps.
+    /// Makes the cases of a material and of a hit, and leaves only their gradients in the program.
     pub(crate) fn both<M: Registered>(program: &mut Program) -> [Self; 2] {
         let cases = [Call::Material, Call::EvalHit].map(|call| Self::new::<M>(program, call));
         program.keep(cases.each_ref().map(|cases| cases.gradient.clone()).into());
@@ -103,7 +103,7 @@ impl Weighted {
                 .sum();
             for (place, got) in got[results..].iter().enumerate() {
                 if let Some(expected) = difference(&self.function, &exact, weights, place) {
-                    // A thousandth of the loss for a change of the whole argument counts as nothing.
+                    // Errors are relative to at least a thousandth of the loss for a change of the whole argument.
                     let least = 1e-3 * loss / exact[place].abs().max(1e-2);
                     let scale = expected.abs().max(least).max(1e-30);
                     errors.push((f64::from(*got) - expected).abs() / scale);

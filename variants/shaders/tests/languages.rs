@@ -1,4 +1,4 @@
-//! Printed source is accepted by the compilers of its language.
+//! Tests that the compilers of a language accept the printed source.
 
 use crate::support::{Random, every_model};
 use hairis_shaders::{Call, Function, Language, Program, Target, driver, print, spirv};
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
 
-/// The program with derivatives as well.
+/// Traces a model, and adds the derivatives to its functions.
 pub(crate) fn with_gradients<M: Registered>(target: Target) -> Program {
     let mut program = Program::of::<M>(target);
     let mut functions = program.functions().to_vec();
@@ -24,7 +24,7 @@ pub(crate) fn write_words(file: &Path, words: &[u32]) {
     fs::write(file, bytes).expect("the folder is ours");
 }
 
-/// Runs a tool. `None` if it is not installed.
+/// Runs a tool, and returns its output as the error if it fails. Returns `None` if the tool is not installed.
 pub(crate) fn tool(name: &str, arguments: &[&str]) -> Option<Result<(), String>> {
     let Ok(output) = Command::new(name).args(arguments).output() else {
         println!("{name} is not installed: skipped");
@@ -54,7 +54,7 @@ fn naga_accepts_wgsl() {
     every_model!(check_wgsl);
 }
 
-/// The last function of a program in GLSL, as SPIR-V.
+/// Compiles the last function of a program in GLSL to SPIR-V.
 pub(crate) fn compile_glsl(program: &Program, dir: &Path) -> Option<PathBuf> {
     let (file, out) = (dir.join("main.comp"), dir.join("glsl.spv"));
     let source = print(program, Language::Glsl) + &driver(program, Language::Glsl);
@@ -90,7 +90,7 @@ fn check_fragment_shader(program: &Program, dir: &Path) {
     assert!(tree.contains("highp"), "{}: {tree}", program.name());
 }
 
-/// A shader of HLSL whose entry point calls the last function with numbers from a buffer.
+/// Returns an HLSL shader whose entry point calls the last function with numbers from a buffer.
 fn hlsl(program: &Program) -> String {
     let glsl = driver(program, Language::Glsl);
     let body = glsl
@@ -106,7 +106,7 @@ fn hlsl(program: &Program) -> String {
     )
 }
 
-/// The last function of a program in HLSL, as SPIR-V.
+/// Compiles the last function of a program in HLSL to SPIR-V.
 pub(crate) fn compile_hlsl(program: &Program, dir: &Path) -> Option<PathBuf> {
     let (file, out) = (dir.join("main.hlsl"), dir.join("hlsl.spv"));
     fs::write(&file, hlsl(program)).expect("the folder is ours");
@@ -208,7 +208,7 @@ fn check_arithmetic<M: Registered>() {
     for target in [Target::Exact, Target::Fused, Target::Gpu, Target::GpuNative] {
         let program = with_gradients::<M>(target);
         let [c, wgsl, glsl, hlsl, msl] = Language::ALL.map(|language| print(&program, language));
-        // Sums that round to an integer.
+        // Sums that round to an integer use the language's rounding function.
         for text in [&wgsl, &msl] {
             let magic = ["8388608.0", "8388723.0", "8388735.0"];
             let is_magic = |line: &&str| magic.iter().any(|number| line.contains(number));
@@ -224,7 +224,7 @@ fn check_arithmetic<M: Registered>() {
                 );
             }
         }
-        // Compilers keep the order of every number's arithmetic.
+        // Numbers are declared precise, so that compilers keep the order of their arithmetic.
         for text in [&glsl, &hlsl] {
             let numbers = text
                 .lines()
@@ -237,7 +237,7 @@ fn check_arithmetic<M: Registered>() {
                 );
             }
         }
-        // Languages without infinity.
+        // Languages without infinity have no literal of it.
         for text in [&wgsl, &c] {
             let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
             assert!(
@@ -245,7 +245,7 @@ fn check_arithmetic<M: Registered>() {
                 "a literal of infinity"
             );
         }
-        // Drivers take `h < 1 || -1 < h` for true.
+        // Drivers take `h < 1 || -1 < h` for true, so that the test for NaN is a function.
         let functions = program.functions().iter();
         let tested = functions.flat_map(|function| {
             let (graph, schedule) = (function.graph(), function.schedule());
@@ -254,11 +254,11 @@ fn check_arithmetic<M: Registered>() {
         });
         let tested = tested.count();
         for text in [&wgsl, &glsl, &hlsl, &msl] {
-            // Itself, and of the second operand of `min` and `max`.
+            // The helper occurs once where it is defined, and once each for the second operand of `min` and `max`.
             let found = text.matches("is_number(").count();
             assert_eq!(found, 3 + tested, "{}: tests of numbers", program.name());
         }
-        // The language's own choice among NaN.
+        // The language's own functions may return either operand for NaN.
         for line in wgsl.lines() {
             assert!(!line.contains(" min(") && !line.contains(" max("), "{line}");
         }
@@ -270,7 +270,7 @@ fn text_avoids_what_compilers_do() {
     every_model!(check_arithmetic);
 }
 
-/// Instructions of a kind in a module.
+/// Returns the number of instructions of a kind in a module.
 fn count(words: &[u32], op: u32) -> usize {
     let (mut at, mut count) = (5, 0);
     while at < words.len() {
@@ -280,7 +280,7 @@ fn count(words: &[u32], op: u32) -> usize {
     count
 }
 
-/// Words against reordering are on every arithmetic instruction, and with exact arithmetic every entry point asks for IEEE's numbers.
+/// Every arithmetic instruction is decorated against reordering, and with exact arithmetic every entry point requires IEEE arithmetic.
 #[test]
 fn spirv_keeps_the_order_of_arithmetic() {
     for target in [Target::Exact, Target::Gpu] {
@@ -356,7 +356,7 @@ fn literals_are_exact() {
             #[expect(clippy::cast_possible_truncation, reason = "as compilers do")]
             let single = read as f32;
             assert_eq!(single.to_bits(), number.to_bits(), "{language:?} {literal}");
-            // Tint refuses decimals above the largest float.
+            // Tint rejects decimals above the largest float.
             assert!(
                 language != Language::Wgsl || read == f64::from(*number),
                 "{literal}"
@@ -406,13 +406,13 @@ fn check_comments<M: Registered>() {
     }
 }
 
-/// Every operation of every model stands below a sentence that says what it computes.
+/// Every operation of every model stands below a comment that states what it computes.
 #[test]
 fn comments_are_in_the_words_of_the_models() {
     every_model!(check_comments);
 }
 
-/// Code that uploads numbers notices another layout.
+/// Layouts that differ have versions that differ, so that code that uploads numbers notices a change.
 #[test]
 fn the_layout_has_a_version() {
     let layouts: Vec<u32> = [

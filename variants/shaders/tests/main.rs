@@ -1,4 +1,4 @@
-//! Tests: translations against the models themselves.
+//! Tests that compare printed source and traced graphs with the models themselves.
 
 mod bits;
 mod c;

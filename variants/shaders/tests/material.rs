@@ -1,4 +1,4 @@
-//! Constants of materials in single precision, as generated source computes them, against those of the library.
+//! Tests of the constants of materials in single precision, as generated source computes them, against those of the library.
 
 use crate::support::{Case, Random, every_model};
 use hairis::Hit;
@@ -7,7 +7,7 @@ use hairis::simd::Vec3x;
 use hairis_shaders::{Program, Target, numbers};
 use hairis_variants::{Kind, ModelId, Parameters, Registered, Values};
 
-/// Parameters from all over their ranges, the ends included.
+/// Draws parameters from their whole ranges, ends included.
 fn legal<P: Parameters>(random: &mut Random) -> P {
     loop {
         let mut values: Values = P::default().values();
@@ -40,8 +40,8 @@ fn legal<P: Parameters>(random: &mut Random) -> P {
     }
 }
 
-/// Distance of two numbers of a field in units of the last place of the second. Sines, cosines and probabilities count in units
-/// of the last place of 1: no result depends on more.
+/// Returns the distance of two numbers of a field in units in the last place of the second. Sines, cosines and probabilities count in
+/// units in the last place of 1, because no result depends on more.
 fn units(field: &str, got: f32, expected: f32) -> f64 {
     let is_share = [
         "sin_shift",
@@ -62,7 +62,7 @@ fn units(field: &str, got: f32, expected: f32) -> f64 {
     }
 }
 
-/// Largest distance of each field over materials, in units in the last place.
+/// Returns the largest distance of each field over materials, in units in the last place.
 fn distances<M: Registered>(draw: impl Fn(&mut Random) -> M::Params) -> Vec<(String, f64)> {
     let program = Program::of::<M>(Target::Exact);
     let places: Vec<String> = program.material().places().collect();
@@ -85,7 +85,7 @@ fn distances<M: Registered>(draw: impl Fn(&mut Random) -> M::Params) -> Vec<(Str
     places.into_iter().zip(worst).collect()
 }
 
-/// Relative errors of value and density by the constants' distance: median, 99.9% and largest, of those above 1e-8.
+/// Returns the relative errors of values and densities above 1e-8 that the constants' distance causes: median, 99.9% and largest.
 fn effect<M: Registered>() -> [f64; 3] {
     let mut errors = Vec::new();
     for case in Case::<M>::smooth(20_000, 61) {
@@ -109,7 +109,7 @@ fn effect<M: Registered>() -> [f64; 3] {
     [at(errors.len() / 2), at(errors.len() / 1000), at(0)]
 }
 
-/// Units in the last place that a constant may be away, in everyday and in any legal materials.
+/// Largest distance of a constant in units in the last place, in everyday and in any legal materials.
 const MOST: f64 = 8.0;
 
 fn check_closeness<M: Registered>() {
@@ -130,7 +130,7 @@ fn check_closeness<M: Registered>() {
     }
     let effect = effect::<M>();
     println!("{name}: value and density {effect:?}");
-    // Narrow lobes of Chiang's magnify the last digits of their variance in their tails.
+    // Narrow lobes of Chiang's model magnify the last digits of their variance in their tails.
     let most = if id.name() == "chiang" { 2e-5 } else { 1e-6 };
     assert!(effect[2] < most, "{name}: {effect:?}");
 }

@@ -1,4 +1,4 @@
-//! Each operation alone, in every language that runs here: a fault in a printer's table is found.
+//! Tests of each operation alone, in every language that runs here, which find a fault in a printer's table.
 
 use crate::c::{compiled, compiled_metal, run};
 use crate::cuda;
@@ -8,7 +8,8 @@ use crate::vulkan::{Driver, Host};
 use hairis::simd::trace::Op;
 use hairis_shaders::{Kind, Language, Program, Rounding, Target, every_operation, print, spirv};
 
-/// Operands of every kind. Denormals are left out, as targets may flush them, and halves: WGSL rounds them the other way in sums with 2^23 and an odd number.
+/// Returns operands of every kind. Denormals are left out, because targets may flush them. Halves are left out, because WGSL rounds them
+/// the other way in sums with 2^23 and an odd number.
 fn operands() -> Vec<f32> {
     let special = [
         0.0,
@@ -36,7 +37,7 @@ fn operands() -> Vec<f32> {
     all
 }
 
-/// Results of the graph, per triple of operands.
+/// Returns the results of the graph, one entry per triple of operands.
 fn expected(program: &Program, rounding: Rounding) -> Vec<Vec<f32>> {
     let function = &program.functions()[0];
     let all = operands();
@@ -100,7 +101,7 @@ fn every_operation_is_right_in_cuda() {
     }
 }
 
-/// No compiler of Metal runs here: its operations are written in C++.
+/// No compiler of Metal runs here, so its operations are written in C++.
 #[test]
 fn every_operation_is_right_in_metal() {
     for target in [Target::Exact, Target::Gpu] {
@@ -126,7 +127,7 @@ fn every_operation_is_right_on_a_driver() {
         let function = &program.functions()[0];
         let got = driver.run(&module, "operations", function, &operands());
         check(&program, &got, &expected, "SPIR-V");
-        // Other languages have no word for how divisions round.
+        // Other languages cannot state how divisions round.
         if !driver.is_software {
             continue;
         }
@@ -141,7 +142,7 @@ fn every_operation_is_right_on_a_driver() {
     }
 }
 
-/// Every operation that lanes record is one of those that are compared.
+/// Every operation that lanes record is among those that are compared.
 #[test]
 fn every_operation_is_compared() {
     let program = every_operation(Target::GpuNative);

@@ -1,4 +1,4 @@
-//! Operations and waiting numbers of each function: a model that grows is noticed.
+//! Tests of the recorded numbers of operations and of live values per function, which make the growth of a model visible.
 
 use crate::support::every_model;
 use hairis_shaders::{Call, Function, Program, Target};
@@ -35,7 +35,7 @@ impl Visitor for &Rows {
     }
 }
 
-/// With `HAIRIS_RECORD=write` in the environment, writes the record.
+/// Compares the counts with the record, or writes the record if `HAIRIS_RECORD=write` is in the environment.
 #[test]
 fn operations_are_those_recorded() {
     let mut text = "model,arithmetic,function,operations,waiting,layout\n".to_owned();

@@ -1,4 +1,4 @@
-//! Cases, and what the models return for them.
+//! Cases for tests, and the results that the models return for them.
 
 use core::cell::RefCell;
 use core::fmt;
@@ -8,7 +8,7 @@ use hairis::{Eval, Hit, Material, Material8};
 use hairis_shaders::{Call, Function, numbers, parameters};
 use hairis_variants::{Kind, ModelId, Parameters, Registered, Values, Visitor};
 
-/// The generator `SplitMix64`.
+/// Generator of random numbers, `SplitMix64`.
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
@@ -20,7 +20,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number in [0, 1).
+    /// Draws a number in [0, 1).
     #[expect(clippy::cast_precision_loss, reason = "24 bits fit a float")]
     pub(crate) fn unit(&mut self) -> f32 {
         (self.next() >> 40) as f32 / 16_777_216.0
@@ -44,7 +44,7 @@ impl Random {
         [u, cos * phi.cos(), cos * phi.sin()]
     }
 
-    /// A direction: at random, along an axis, grazing, of any length, or none.
+    /// Draws a direction: at random, along an axis, grazing, of any length, or not a direction at all.
     fn direction(&mut self) -> [f32; 3] {
         let mut wi = self.sphere();
         match self.next() % 32 {
@@ -83,7 +83,7 @@ impl Random {
         xi
     }
 
-    /// A material: the first preset, or any; one in four with narrow lobes.
+    /// Draws parameters of a material, one in four with narrow lobes.
     pub(crate) fn material<P: Parameters>(&mut self) -> P {
         loop {
             let mut values: Values = P::default().values();
@@ -123,7 +123,7 @@ impl Random {
     }
 }
 
-/// Arguments of every call.
+/// Arguments of every call, with the material that they are for.
 pub(crate) struct Case<M: Model> {
     handle: Material<M>,
     pub(crate) values: Values,
@@ -156,7 +156,7 @@ fn sample<L: Copy>(s: &SampleLanes<L>) -> Vec<L> {
 }
 
 impl<M: Registered> Case<M> {
-    /// Cases with everything that a host may pass, eight to a material.
+    /// Draws cases with everything that a host may pass, eight to a material.
     pub(crate) fn many(count: usize, seed: u64) -> Vec<Self> {
         let mut random = Random(seed);
         let mut params = M::Params::PRESETS[0].1;
@@ -178,7 +178,7 @@ impl<M: Registered> Case<M> {
         cases
     }
 
-    /// Cases away from the edges, each with a material of its own.
+    /// Draws cases away from the edges, each with a material of its own.
     pub(crate) fn smooth(count: usize, seed: u64) -> Vec<Self> {
         let mut random = Random(seed);
         let mut cases = Self::many(count, seed);
@@ -193,12 +193,12 @@ impl<M: Registered> Case<M> {
         cases
     }
 
-    /// Shading point of one lane.
+    /// Computes the shading point in one lane.
     pub(crate) fn prepared(&self) -> M::Prepared<f32> {
         M::prepare::<f32, f32>(&self.material, Hit::new(vector(self.wo), self.h))
     }
 
-    /// Arguments of a call.
+    /// Returns the arguments of a call as the numbers that its function takes.
     pub(crate) fn arguments(&self, call: Call) -> Vec<f32> {
         let mut all = match call {
             Call::Material => return parameters(&self.values),
@@ -219,7 +219,7 @@ impl<M: Registered> Case<M> {
         all
     }
 
-    /// Results of one lane.
+    /// Computes the results of a call in one lane.
     pub(crate) fn results(&self, call: Call) -> Vec<f32> {
         let prepared = self.prepared();
         let at = || eval(&M::eval::<f32, f32>(&prepared, vector(self.wi)));
@@ -241,7 +241,7 @@ impl<M: Registered> Case<M> {
         }
     }
 
-    /// Results of [`Call::EvalSampleHit`] on a level: eight cases.
+    /// Computes the results of [`Call::EvalSampleHit`] for eight cases on a level.
     pub(crate) fn results8(cases: &[Self; 8], level: Level) -> [Vec<f32>; 8] {
         let lanes = |of: &dyn Fn(&Self) -> f32| f32x8::new(cases.each_ref().map(of));
         let lanes3 = |of: fn(&Self) -> [f32; 3]| [0, 1, 2].map(|i| lanes(&|case| of(case)[i]));
@@ -254,17 +254,17 @@ impl<M: Registered> Case<M> {
     }
 }
 
-/// A level that fuses, if this CPU has one.
+/// Returns a level that fuses, if this CPU has one.
 pub(crate) fn fusing_level() -> Option<Level> {
     Level::available().find(|level| level.fuses())
 }
 
-/// Whether both are the same number, or both none.
+/// Returns true if both have the same bits, or both are NaN.
 pub(crate) fn same(a: f32, b: f32) -> bool {
     a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
 }
 
-/// Results that differ in a bit.
+/// Counts the results that differ in a bit, and prints the first.
 pub(crate) fn differing(function: &Function, got: &[f32], expected: &[Vec<f32>]) -> usize {
     let len = function.output().len();
     assert_eq!(
@@ -285,7 +285,7 @@ pub(crate) fn differing(function: &Function, got: &[f32], expected: &[Vec<f32>])
         })
     };
     let mut pairs = got.chunks(len).zip(expected);
-    // The first is named.
+    // Only the first is printed.
     match pairs.by_ref().find(is_other) {
         Some(_) => {
             let count = pairs
@@ -297,17 +297,17 @@ pub(crate) fn differing(function: &Function, got: &[f32], expected: &[Vec<f32>])
     }
 }
 
-/// The number, 0 without its sign.
+/// Returns the number, with 0 made positive.
 pub(crate) fn unsigned(x: f32) -> f32 {
     if x == 0.0 { 0.0 } else { x }
 }
 
-/// Functions with cases that differ, so that one run names all of them.
+/// Functions with cases that differ, collected so that one run names all of them.
 #[derive(Default)]
 pub(crate) struct Tally(RefCell<Vec<String>>);
 
 impl Tally {
-    /// Compares results with those expected.
+    /// Compares results with the expected ones, and notes the function if any differ.
     pub(crate) fn count(
         &self,
         function: &Function,
@@ -323,23 +323,25 @@ impl Tally {
         }
     }
 
+    /// Fails the test if any results differed.
+    ///
     /// # Panics
     ///
-    /// If any differed.
+    /// Panics with the names of all functions whose results differed.
     pub(crate) fn check(self) {
         let lines = self.0.into_inner();
         assert!(lines.is_empty(), "{}", lines.join("\n"));
     }
 }
 
-/// Runs a test of each model of the list.
+/// Runs a test on each model of the list.
 pub(crate) fn visit_every_model<V: Visitor + Copy>(visitor: V) {
     for id in ModelId::ALL {
         id.visit(visitor);
     }
 }
 
-/// Runs a function of a model for each of the list.
+/// Runs a function that is generic over a model for each model of the list.
 macro_rules! every_model {
     ($check:ident) => {{
         #[derive(Clone, Copy)]
@@ -355,7 +357,7 @@ macro_rules! every_model {
 }
 pub(crate) use every_model;
 
-/// Count of cases per model: all of them when `HAIRIS_CASES` says how many.
+/// Returns the number of cases per model: `HAIRIS_CASES` if it is set, else `usual`.
 pub(crate) fn case_count(usual: usize) -> usize {
     let told = std::env::var("HAIRIS_CASES");
     told.map_or(usual, |count| {

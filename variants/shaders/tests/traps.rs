@@ -1,4 +1,4 @@
-//! Traps of translated arithmetic, and the test that each would fail.
+//! Traps of translated arithmetic, and for each the test that would fail.
 //!
 //! | trap | test |
 //! |---|---|
@@ -36,13 +36,13 @@ fn check_straight_line<M: Registered>() {
     }
 }
 
-/// No branch and no loop: a GPU's lanes stay together, and a compiler vectorises a loop over a function.
+/// Functions have no branch and no loop, so that the lanes of a GPU stay together and a compiler vectorises a loop over a function.
 #[test]
 fn functions_are_straight_lines() {
     every_model!(check_straight_line);
 }
 
-/// Compilers that contract or reorder arithmetic unless told otherwise are told how, in the file itself.
+/// The file itself names the flags of compilers that contract or reorder arithmetic by default.
 #[test]
 fn compilers_with_flags_are_named() {
     let program = Program::of::<KajiyaKay>(Target::Exact);
@@ -66,7 +66,7 @@ fn compilers_with_flags_are_named() {
     }
 }
 
-/// A function of fewer results is never larger than the whole.
+/// A function of fewer results never has more operations than the whole.
 #[test]
 fn every_field_alone_takes_fewer_operations() {
     let program = Program::of::<KajiyaKay>(Target::Gpu);

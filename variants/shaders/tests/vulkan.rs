@@ -1,5 +1,5 @@
-//! Shaders on a Vulkan driver, and on WebGPU in a browser: the bits of one lane where arithmetic keeps its order, its accuracy where
-//! it may not.
+//! Tests of shaders on a Vulkan driver, and on WebGPU in a browser. They have the bits of one lane if arithmetic keeps its order, and the
+//! accuracy of one lane otherwise.
 
 use crate::gradients::Weighted;
 use crate::languages::{compile_glsl, tool, write_words};
@@ -23,17 +23,17 @@ pub(crate) enum Host {
     Browser,
 }
 
-/// A host that is there, and a folder for its files.
+/// Host that is available on this machine, and a folder for its files.
 pub(crate) struct Driver {
     pub(crate) dir: TempDir,
-    /// Whether every division and square root of it rounds to nearest, whatever the language.
+    /// True if the host rounds every division and square root to nearest, in any language.
     pub(crate) is_software: bool,
     host: Host,
     program: PathBuf,
 }
 
 impl Driver {
-    /// `None` where a compiler and Vulkan, or the browser that `HAIRIS_CHROMIUM` names, are missing.
+    /// Returns `None` if a compiler or Vulkan is missing, or if `HAIRIS_CHROMIUM` does not name a browser.
     pub(crate) fn new(host: Host) -> Option<Self> {
         let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
         let dir = TempDir::new().expect("a folder for shaders");
@@ -69,7 +69,7 @@ impl Driver {
         })
     }
 
-    /// How often `fma` rounds: drivers may choose.
+    /// Returns the rounding of `fma`, which drivers may choose.
     pub(crate) fn rounding(&self) -> Rounding {
         let program = every_operation(Target::Fused);
         let function = &program.functions()[0];
@@ -84,7 +84,7 @@ impl Driver {
         right.next().expect("each operation has one of two results")
     }
 
-    /// Arithmetic whose bits are known: a GPU's quotients are not those of IEEE unless a module asks for them.
+    /// Returns the targets whose bits are known: quotients of a GPU are IEEE's only if a module requires it.
     pub(crate) fn kept(&self) -> Vec<Target> {
         let of_gpu = self.is_software.then_some(Target::Gpu);
         [Target::Exact, Target::Fused]
@@ -93,8 +93,8 @@ impl Driver {
             .collect()
     }
 
-    /// The number as it is compared: `fma` of a GPU flushes denormals, whatever the module asks for, and tiny numbers then have other
-    /// last digits.
+    /// Returns the number as it is compared. A GPU's `fma` flushes denormals, whatever the module requires, and tiny numbers then have
+    /// other last digits, so they are compared as 0.
     fn compared(&self, target: Target, x: f32) -> f32 {
         let is_flushed = target == Target::Fused && !self.is_software;
         if is_flushed && x.abs() < 1e-24 {
@@ -104,7 +104,7 @@ impl Driver {
         }
     }
 
-    /// Module of a program as plain WGSL, with an entry point per function.
+    /// Writes a program as a plain WGSL module, with an entry point per function.
     fn plain(&self, program: &Program) -> PathBuf {
         let source = print(program, Language::Wgsl) + &shader_driver(program, Language::Wgsl);
         let module = self.dir.path().join("plain");
@@ -154,7 +154,7 @@ impl Driver {
     }
 }
 
-/// Calls whose results are compared: those of a shading point are parts of them.
+/// Calls whose results are compared. The calls of a shading point are parts of them.
 const CALLS: [Call; 3] = [Call::EvalHit, Call::SampleHit, Call::Material];
 
 #[derive(Clone, Copy)]
@@ -181,7 +181,7 @@ impl Visitor for Kept<'_> {
                     Target::Exact => case.results(call),
                     _ => function.run(&case.arguments(call), rounding),
                 });
-                // Drivers may lose the sign of 0, which means nothing in a material, nor in a derivative.
+                // Drivers may lose the sign of 0, which has no meaning in a material or a derivative.
                 let compared = |numbers: Vec<f32>| -> Vec<f32> {
                     let numbers = numbers.into_iter().map(|x| driver.compared(target, x));
                     match call {
@@ -193,7 +193,7 @@ impl Visitor for Kept<'_> {
                 let got = compared(driver.run(&module, call.name(), function, &inputs));
                 let name = format!("{} {} {target:?}", program.name(), call.name());
                 self.0.count(function, &got, &expected, &name);
-                // GLSL has no word for how divisions round.
+                // GLSL cannot state how divisions round.
                 if target == Target::Exact && driver.is_software {
                     let mut one = program.clone();
                     one.keep(vec![function.clone()]);
@@ -216,7 +216,7 @@ fn shaders_that_keep_their_order_have_the_bits_of_one_lane() {
     tally.check();
 }
 
-/// Errors of values and densities relative to double precision, of arguments that are numbers: the quantiles 50%, 99% and
+/// Returns quantiles of the errors of values and densities relative to double precision, over arguments that are numbers: 50%, 99% and
 /// 99.9%.
 fn quantiles(got: &[f32], exact: &[f64]) -> [f64; 3] {
     let pairs = got
@@ -240,7 +240,7 @@ fn quantiles(got: &[f32], exact: &[f64]) -> [f64; 3] {
     })
 }
 
-/// Cases, what `EvalHit` returns for them in double precision, and the errors of one lane.
+/// Cases, the results of `EvalHit` for them in double precision, and the errors of one lane.
 pub(crate) struct Doubles<'a, M: Registered> {
     cases: &'a [Case<M>],
     results: Vec<f64>,
@@ -266,8 +266,8 @@ impl<'a, M: Registered> Doubles<'a, M> {
         }
     }
 
-    /// Compares the results of `EvalHit`, whose errors are to be less than twice those of one lane, and checks that those of arguments
-    /// that are no numbers, also of `SampleHit`, are black. `results` runs one of these two functions.
+    /// Checks that the errors of `EvalHit` are less than twice those of one lane, and that non-finite arguments of `EvalHit` and
+    /// `SampleHit` evaluate to zero. `results` runs one of these two functions.
     pub(crate) fn check(
         &self,
         [eval, sample]: [&Function; 2],
@@ -285,7 +285,7 @@ impl<'a, M: Registered> Doubles<'a, M> {
         for (these, one) in of_these.iter().zip(self.of_one) {
             assert!(*these < 2.0 * one.max(1e-6), "{name}");
         }
-        // What is no direction is black.
+        // Non-finite directions evaluate to zero.
         let results = evals.chunks(4).zip(samples.chunks(11));
         for (case, (eval, sample)) in self.cases.iter().zip(results) {
             let is_number = |x: &[f32; 3]| x.iter().all(|x| x.is_finite());

@@ -2,7 +2,7 @@
 //
 //   node webgpu.mjs MODULE.wgsl ENTRY INPUT OUTPUT FLOATS_PER_CALL FLOATS_PER_RESULT
 //
-// $HAIRIS_CHROMIUM is the browser, and $HAIRIS_PLAYWRIGHT the folder that playwright-core is installed in.
+// $HAIRIS_CHROMIUM is the browser, and $HAIRIS_PLAYWRIGHT the folder in which playwright-core is installed.
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { createRequire } from 'node:module';
@@ -22,7 +22,7 @@ const browser = await chromium.launch({
   args: ['--no-sandbox', '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan'],
 });
 
-/// In the browser: the pipeline, one dispatch, and the results back to the server.
+/// Runs in the browser: sets up the pipeline, dispatches once, and posts the results to the server.
 async function run({ entry, calls, size }) {
   const adapter = await navigator.gpu?.requestAdapter();
   if (!adapter) throw new Error('no adapter of WebGPU');

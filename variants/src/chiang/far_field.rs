@@ -1,14 +1,20 @@
-//! The far field of the near-field fibre: the mean over the offset `h`, by Gauss nodes of `h` in lanes.
+//! Far field of the near-field fibre: the mean over the offset `h`, by Gauss nodes of `h` that fill the lanes.
 
 use super::{Chiang, ChiangDesc};
 use hairis::simd::{Vec3x, f32x8};
 use hairis::{Bsdf8, Eval, Hit, LobeMask, Material, PerLobe, Sample, Vec3x8};
 
-/// Gauss-Legendre nodes of the offset `h` over `[-1, 1]`, eight per packet: build it once, for all materials and hits.
+/// Gauss-Legendre nodes of the offset `h` over `[-1, 1]`, eight per packet. Build them once, for all materials and hits.
 ///
-/// - Number: [`ChiangDesc::far_field_nodes`] gives the number that a roughness needs. With `8 PACKETS` of 8, 16, 32 and 64 the sum of
-///   `A N` is off by (mean over the azimuth) .8%, .1%, 0 and 0 at a `beta_n` of .5; 6%, .5%, 0 and 0 at .3; 26%, 4%, .3% and 0
-///   at .2; 90%, 43%, 10% and 1% at .1.
+/// [`ChiangDesc::far_field_nodes`] returns the number of nodes that a roughness needs. With `8 PACKETS` nodes, the sum of `A N` has this
+/// error, as a mean over the azimuth:
+///
+/// | `beta_n` | 8 nodes | 16 nodes | 32 nodes | 64 nodes |
+/// |---|---|---|---|---|
+/// | .5 | .8% | .1% | 0 | 0 |
+/// | .3 | 6% | .5% | 0 | 0 |
+/// | .2 | 26% | 4% | .3% | 0 |
+/// | .1 | 90% | 43% | 10% | 1% |
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OffsetNodes<const PACKETS: usize> {
     h: [[f32; 8]; PACKETS],
@@ -16,7 +22,7 @@ pub struct OffsetNodes<const PACKETS: usize> {
 }
 
 impl<const PACKETS: usize> OffsetNodes<PACKETS> {
-    /// The nodes: zeros of the Legendre polynomial of degree `8 PACKETS`, by Newton's method in `f64`.
+    /// Computes the nodes, which are the zeros of the Legendre polynomial of degree `8 PACKETS`, by Newton's method in `f64`.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "nodes and weights in [-1, 1]"
@@ -43,7 +49,7 @@ impl<const PACKETS: usize> OffsetNodes<PACKETS> {
                 x -= p / slope;
             }
             nodes.h[i / 8][i % 8] = x as f32;
-            // Half of the rule's weight: they sum to 1.
+            // Half of the weight of the rule, so that the weights sum to 1.
             nodes.weight[i / 8][i % 8] = (1.0 / ((1.0 - x * x) * slope * slope)) as f32;
         }
         nodes
@@ -58,8 +64,8 @@ impl<const PACKETS: usize> Default for OffsetNodes<PACKETS> {
 }
 
 impl ChiangDesc {
-    /// Nodes of `h` that the far field of this roughness needs: `1.7 / s`, `s` the [scale](Self::azimuthal_scale) of the
-    /// azimuth, in whole packets of eight. Below a `beta_n` of .05 it is cheaper to draw `h` per hit.
+    /// Returns the number of nodes of `h` that the far field of this roughness needs: `1.7 / s`, with `s` the
+    /// [scale](Self::azimuthal_scale) of the azimuth, in whole packets of eight. Below a `beta_n` of .05, drawing `h` per hit is cheaper.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -73,9 +79,9 @@ impl ChiangDesc {
     }
 }
 
-/// A shading point in the far field: `wo` is given, and `h` is uniform.
+/// Shading point in the far field, where `wo` is given and `h` is uniform.
 ///
-/// Value and density are means over the nodes. Energy is that of the near field, whatever the nodes.
+/// Value and density are means over the nodes. The energy is the energy of the near field, whatever the nodes.
 ///
 /// ```
 /// use glam::Vec3;
@@ -95,7 +101,7 @@ pub struct FarField<const PACKETS: usize, const BY_CHANNEL: bool = false> {
 }
 
 impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL> {
-    /// The shading point of a material seen from `wo`, whose domain is that of [`Material::prepare`].
+    /// Prepares the shading point of a material seen from `wo`, whose domain is that of [`Material::prepare`].
     #[inline]
     #[must_use]
     pub fn prepare(
@@ -113,7 +119,7 @@ impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL>
         }
     }
 
-    /// S at `wi`, without the cosine, and the density of sampling it, per steradian.
+    /// Evaluates S at `wi`, without the cosine, and the density of sampling `wi`, per steradian.
     #[inline]
     #[must_use]
     pub fn eval_pdf(&self, wi: impl Into<Vec3x<f32>>) -> Eval {
@@ -134,8 +140,8 @@ impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL>
         }
     }
 
-    /// A direction for three uniform numbers in `[0, 1)`: the first chooses the node, its lobe and the azimuth. `None` is a
-    /// discarded sample, which counts.
+    /// Draws a direction by three uniform numbers in `[0, 1)`, of which the first chooses the node, its lobe and the azimuth. `None`
+    /// is a discarded sample, which still counts as a sample.
     #[inline]
     #[must_use]
     pub fn sample(&self, [first, second, third]: [f32; 3]) -> Option<Sample> {
@@ -161,7 +167,7 @@ impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL>
         })
     }
 
-    /// The shading point with only some of its lobes.
+    /// Keeps only the lobes of the mask; the others neither scatter nor are sampled.
     #[inline]
     #[must_use]
     pub fn with_lobes(&self, lobes: LobeMask) -> Self {
@@ -171,7 +177,7 @@ impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL>
         }
     }
 
-    /// Directional albedo of each lobe, linear RGB: the mean over the nodes.
+    /// Returns the directional albedo of each lobe, linear RGB, as the mean over the nodes.
     #[inline]
     #[must_use]
     pub fn albedo(&self) -> PerLobe<[f32; 3]> {
@@ -188,7 +194,7 @@ impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL>
     }
 }
 
-/// The sum of the lanes, in their order: that of `reduce_add` depends on the build, and so do its last bits.
+/// Sums the lanes in their order. The order of `reduce_add` depends on the build, and so would the last bits of the sum.
 #[inline(always)]
 fn total(lanes: f32x8) -> f32 {
     lanes.as_array().iter().sum()

@@ -1,4 +1,4 @@
-//! The model in the registry, and its parameters as fields.
+//! Registry entry of the energy-conserving fibre, and its parameters as fields.
 
 use super::params::{INDEX, ROUGHNESS, SHARE, TILT};
 use super::{Chiang, ChiangDesc, ChiangMaterial, ChiangParams, Shifts};
@@ -102,7 +102,7 @@ impl Parameters for ChiangParams {
         Self::new(&desc)
     }
 
-    /// The fibre itself: it returns no more than it receives.
+    /// Checks `factor` and returns the fibre unchanged, because it returns no more light than it receives.
     #[inline]
     fn scaled(&self, factor: f32) -> Result<Self, ParamError> {
         Rule::NotNegative.check("factor", &[factor])?;

@@ -1,4 +1,4 @@
-//! Constants of the energy-conserving fibre: per material, and per material and hit.
+//! Constants of the energy-conserving fibre, which are computed once per material and once per hit.
 
 use super::params;
 use hairis::model::math::gaussian_and_complement;
@@ -7,69 +7,69 @@ use hairis::simd::{Broadcast, Lanes, Pair, lane_struct, lanes3, store4};
 use hairis::{Hit, PerLobe};
 
 lane_struct! {
-    /// The widths of the lobes. Arrays of four are R, TT, TRT and the rest.
+    /// Widths of the lobes. Arrays of four hold R, TT, TRT and the rest.
     pub(super) struct ChiangWidths {
         /// Longitudinal variance v.
         pub(super) variance: [C; 4],
-        /// `1 / v`.
+        /// Inverse of the variance: `1 / v`.
         pub(super) inv_variance: [C; 4],
-        /// `1 - exp(-2 / v)`.
+        /// Range of the longitudinal sampler: `1 - exp(-2 / v)`.
         pub(super) cut: [C; 4],
         /// Norm of `M N`: `1 / (v (1 - exp(-2 / v)) s K)`, and for the rest `2 pi` in place of `s K`.
         pub(super) norm: [C; 4],
         /// Scale s of the azimuthal logistic, rad.
         pub(super) scale: C,
-        /// `4 / s`.
+        /// Factor from a half azimuth to the argument of a Gaussian: `4 / s`.
         pub(super) four_inv_scale: C,
-        /// `K = tanh(pi / 2s)`: the part of the logistic within half a turn.
+        /// Part of the logistic within half a turn: `K = tanh(pi / 2s)`.
         pub(super) kept: C,
     }
 }
 
 lane_struct! {
-    /// The constants of a material of the energy-conserving fibre.
+    /// Constants of a material of the energy-conserving fibre.
     pub struct ChiangMaterial {
-        /// Absorption per radius, linear RGB, doubled: the argument of a Gaussian, per length.
+        /// Absorption per radius, linear RGB, doubled to be the argument of a Gaussian per length.
         pub(super) twice_sigma_a: [C; 3],
-        /// Index of refraction, doubled; its square; and its square less 1.
+        /// Twice the index of refraction, its square, and its square less 1.
         pub(super) eta: [C; 3],
         /// Sine of each lobe's shift of `theta_i + theta_o`.
         pub(super) sin_shift: [C; 4],
         /// Cosine of each lobe's shift.
         pub(super) cos_shift: [C; 4],
-        /// The widths of the lobes.
+        /// Widths of the lobes.
         pub(super) widths: ChiangWidths<C>,
     }
 }
 
 lane_struct! {
-    /// The constants of a shading point of the energy-conserving fibre.
+    /// Constants of a shading point of the energy-conserving fibre, from which a spectral host can compute attenuations.
     pub struct ChiangPrepared {
         /// Sine of each lobe's cone, `theta' = theta_o - shift`.
         pub(super) sin_cone: [C; 4],
-        /// Its cosine.
+        /// Cosine of each lobe's cone.
         pub(super) cos_cone: [C; 4],
-        /// `cos theta' / v`.
+        /// Factor of the Bessel function's argument: `cos theta' / v`.
         pub(super) concentration: [C; 4],
-        /// `sqrt(v / cos theta')`.
+        /// Inverse root of that factor: `sqrt(v / cos theta')`.
         pub(super) spread: [C; 4],
         /// Component along v of the unit vector at each lobe's azimuth.
         pub(super) azimuth_v: [C; 4],
-        /// Its component along w.
+        /// Component along w of the unit vector at each lobe's azimuth.
         pub(super) azimuth_w: [C; 4],
-        /// Attenuation of each lobe, linear RGB: the channels of R first.
+        /// Attenuation of each lobe, linear RGB, with the channels of R first.
         pub(super) attenuation: [C; 12],
         /// Fresnel reflectance.
         pub(super) fresnel: C,
         /// Length of one passage through the fibre, in radii.
         pub(super) path_length: C,
-        /// The widths of the lobes.
+        /// Widths of the lobes.
         pub(super) widths: ChiangWidths<C>,
     }
 }
 
 impl<L: Lanes<Stored = L>> ChiangMaterial<L> {
-    /// The material of a description, whose ranges are those of checked parameters; the mask is set for
+    /// Computes the constants of a description, whose values lie in the ranges of checked parameters. The mask is set for
     /// [`Shifts::SmallAngle`](super::Shifts::SmallAngle).
     #[inline]
     #[must_use]
@@ -103,7 +103,7 @@ impl<L: Lanes<Stored = L>> ChiangMaterial<L> {
         };
         Self {
             twice_sigma_a: sigma_a.map(|sigma| (sigma * 2.0).min(L::splat(f32::MAX))),
-            // The last one keeps its digits next to an index of 1, and is exact in double precision.
+            // The last number keeps its digits next to an index of 1, and is exact in double precision.
             eta: [
                 eta * 2.0,
                 (index * index).rounded(),
@@ -119,7 +119,7 @@ impl<L: Lanes<Stored = L>> ChiangMaterial<L> {
 /// Packet of the four lobes: R, TT, TRT and the rest.
 pub(super) type Four<L> = Pair<Pair<L>>;
 
-/// The four numbers of a table as one packet.
+/// Reads the four numbers of a table as one packet.
 #[inline(always)]
 pub(super) fn four<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> Four<L> {
     Pair(
@@ -134,13 +134,13 @@ pub(super) fn same<L: Lanes>(x: L) -> Four<L> {
     Pair(Pair(x, x), Pair(x, x))
 }
 
-/// The number of each.
+/// Splits a packet into the number of each lobe.
 #[inline(always)]
 pub(super) fn apart<L: Lanes>(Pair(Pair(a, b), Pair(c, d)): Four<L>) -> [L; 4] {
     [a, b, c, d]
 }
 
-/// Product of two complex numbers.
+/// Multiplies two complex numbers.
 #[inline(always)]
 fn product<L: Lanes>([a, b]: [L; 2], [c, d]: [L; 2]) -> [L; 2] {
     [
@@ -149,10 +149,10 @@ fn product<L: Lanes>([a, b]: [L; 2], [c, d]: [L; 2]) -> [L; 2] {
     ]
 }
 
-/// Fresnel reflectance and transmittance of unpolarised light at the cosine `c`; `k` is `sqrt(eta^2 - 1 + c^2)`.
+/// Returns the Fresnel reflectance and transmittance of unpolarised light at the cosine `c`; `k` is `sqrt(eta^2 - 1 + c^2)`.
 ///
-/// Neither is formed by a difference: the reflectance keeps its digits where the index is next to 1, and the transmittance
-/// where all light is reflected. `(c - k)(c + k)` is `1 - eta^2`.
+/// No difference is taken, so that the reflectance keeps its digits where the index is next to 1, and the transmittance where
+/// all light is reflected. `(c - k)(c + k)` is `1 - eta^2`.
 #[inline(always)]
 fn fresnel<L: Lanes>(c: L, k: L, eta_sq: L, eta_sq_less_one: L) -> [L; 2] {
     let (one, tiny) = (L::splat(1.0), L::splat(1e-15));
@@ -172,7 +172,7 @@ fn fresnel<L: Lanes>(c: L, k: L, eta_sq: L, eta_sq_less_one: L) -> [L; 2] {
     ]
 }
 
-/// The shading point of a material hit from `hit.wo` at `hit.h`.
+/// Computes the constants of a shading point for a material seen from `hit.wo` at the offset `hit.h`.
 #[inline(always)]
 pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     m: &ChiangMaterial<C>,
@@ -201,11 +201,11 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     let cos_gamma_o = zero.max((one - sin_gamma_o) * (one + sin_gamma_o)).sqrt();
     let [twice_eta, eta_sq, eta_sq_less_one] = lanes3(&m.eta);
     let inside_sq = cos_o.mul_add(cos_o, eta_sq_less_one);
-    // Along a fibre that does not refract, the ray inside is the one outside.
+    // In a fibre that does not refract, the ray inside has the direction of the ray outside.
     let straight = inside_sq.lt(c(1e-30));
     let inv_inside = L::quotient(one, inside_sq.max(c(1e-30)).sqrt());
     let sin_gamma_t = sin_gamma_o * L::select(straight, one, (cos_o * inv_inside).min(one));
-    // Of squares that are added: the difference from 1 loses the edge of a fibre that hardly refracts.
+    // A sum of squares, because a difference from 1 loses the edge of a fibre that hardly refracts.
     let cos_hit = cos_o * cos_gamma_o;
     let k = cos_hit.mul_add(cos_hit, eta_sq_less_one).sqrt();
     let cos_gamma_t = L::select(straight, cos_gamma_o, (k * inv_inside).min(one));
@@ -222,14 +222,14 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         let trt = tt * (f * t);
         attenuation[3 + channel] = tt.store();
         attenuation[6 + channel] = trt.store();
-        // Over the loss of a passage, `1 - F T`: the light that does not return to the inside.
+        // Divided by the loss of a passage, `1 - F T`, which is the light that does not return to the inside.
         attenuation[9 + channel] =
             L::quotient(trt * (f * t), f.mul_add(absorbed, passed).max(c(1e-30))).store();
         channel += 1;
     }
 
     L::stage("azimuth of each lobe");
-    // Wo's turned by -2 gamma_o, and for each passage by pi + 2 gamma_t.
+    // The azimuth of wo, turned by -2 gamma_o, and by pi + 2 gamma_t for each passage.
     let back = product([cos_gamma_o, -sin_gamma_o], [cos_gamma_o, -sin_gamma_o]);
     let passage = product([cos_gamma_t, sin_gamma_t], [cos_gamma_t, sin_gamma_t]);
     let passage = [-passage[0], -passage[1]];
@@ -241,13 +241,13 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         Pair(Pair(r[0], tt[0]), Pair(trt[0], rest[0])),
         Pair(Pair(r[1], tt[1]), Pair(trt[1], rest[1])),
     ];
-    // Back to unit length, from which rounding has taken little.
+    // Restores unit length, from which rounding has moved the vectors a little.
     let by = v
         .mul_add(v, w * w)
         .mul_add(Four::splat(-0.5), Four::splat(1.5));
 
     L::stage("cone of each lobe: theta_o less the shift");
-    // Past the pole it folds back.
+    // Past the pole, the cone folds back.
     let (sin, cos) = (four(&m.sin_shift), four(&m.cos_shift));
     let sin_cone = Four::difference_of_products(same(sin_o), cos, same(cos_o), sin);
     let cos_cone = Four::difference_of_products(same(cos_o), cos, same(-sin_o), sin).abs();
@@ -270,7 +270,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     }
 }
 
-/// Attenuation of lobe `p`, linear RGB.
+/// Returns the attenuation of lobe `p`, linear RGB.
 #[inline(always)]
 pub(super) fn attenuation<L: Lanes, C: Broadcast<L>>(
     prepared: &ChiangPrepared<C>,
@@ -283,14 +283,14 @@ pub(super) fn attenuation<L: Lanes, C: Broadcast<L>>(
     ])
 }
 
-/// Attenuation of the four lobes in one channel.
+/// Returns the attenuation of the four lobes in one channel.
 #[inline(always)]
 fn channel<L: Lanes, C: Broadcast<L>>(prepared: &ChiangPrepared<C>, c: usize) -> Four<L> {
     let a = &prepared.attenuation;
     four(&[a[c], a[3 + c], a[6 + c], a[9 + c]])
 }
 
-/// The mean of each lobe's attenuation over the channels.
+/// Returns the mean of each lobe's attenuation over the channels.
 #[inline(always)]
 pub(super) fn mean_shares<L: Lanes, C: Broadcast<L>>(prepared: &ChiangPrepared<C>) -> PerLobe<L> {
     PerLobe(apart(
@@ -299,7 +299,7 @@ pub(super) fn mean_shares<L: Lanes, C: Broadcast<L>>(prepared: &ChiangPrepared<C
     ))
 }
 
-/// `sqrt(sum over the channels of (A_pc / mu_c)^2)`, `mu_c` the sum over the lobes.
+/// Returns `sqrt(sum over the channels of (A_pc / mu_c)^2)` for each lobe, with `mu_c` the sum over the lobes.
 #[inline(always)]
 pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(
     prepared: &ChiangPrepared<C>,
@@ -322,16 +322,16 @@ pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(
 }
 
 impl ChiangPrepared<f32> {
-    /// Fresnel reflectance F at the hit. With the [path length](Self::path_length) it gives a spectral host its
-    /// attenuations: for an absorption sigma, `T = exp(-sigma l)`, R has `F`, TT `(1 - F)^2 T`, TRT `(1 - F)^2 F T^2`, and the
-    /// rest `(1 - F)^2 F^2 T^3 / (1 - F T)`.
+    /// Returns the Fresnel reflectance F at the hit. With F and the [path length](Self::path_length) l, a spectral host computes
+    /// the attenuations for an absorption sigma. With `T = exp(-sigma l)`, R has `F`, TT has `(1 - F)^2 T`, TRT has
+    /// `(1 - F)^2 F T^2`, and the rest has `(1 - F)^2 F^2 T^3 / (1 - F T)`.
     #[inline]
     #[must_use]
     pub const fn fresnel(&self) -> f32 {
         self.fresnel
     }
 
-    /// Length of one passage through the fibre, in radii.
+    /// Returns the length of one passage through the fibre, in radii.
     #[inline]
     #[must_use]
     pub const fn path_length(&self) -> f32 {

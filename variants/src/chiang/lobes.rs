@@ -1,4 +1,4 @@
-//! Densities of the lobes at a direction.
+//! Densities of the four lobes at a direction, per steradian.
 
 use super::ChiangPrepared;
 use super::gather::{Four, apart, four, same};
@@ -7,9 +7,9 @@ use hairis::model::Direction;
 use hairis::model::math::{atan_eighth_turn, gaussian, polynomial};
 use hairis::simd::{Broadcast, Lanes, Pair, Schedule};
 
-/// Below this the scaled Bessel function is a series in `x^2`, above one in `1 / x`.
+/// Argument below which the scaled Bessel function is a series in `x^2`, and above which it is a series in `1 / x`.
 const SEAM: f32 = 5.5;
-/// `I0(x)` in powers of `x^2`, for `x` below the seam.
+/// Coefficients of `I0(x)` in powers of `x^2`, for `x` below the seam.
 const SERIES: [f32; 8] = [
     0.999_999_964_93,
     0.250_000_247_14,
@@ -20,7 +20,7 @@ const SERIES: [f32; 8] = [
     4.144_287_593_5e-10,
     3.643_167_776e-12,
 ];
-/// `exp(-x) I0(x) sqrt(x)` in powers of `1 / x`, above it.
+/// Coefficients of `exp(-x) I0(x) sqrt(x)` in powers of `1 / x`, for `x` above the seam.
 const TAIL: [f32; 6] = [
     0.398_942_300_81,
     0.049_868_737_73,
@@ -30,11 +30,11 @@ const TAIL: [f32; 6] = [
     0.535_620_729_8,
 ];
 
-/// Density `M N` of each lobe, per steradian, and `1 / cos theta_i`.
+/// Returns the density `M N` of each lobe, per steradian, and `1 / cos theta_i`.
 ///
 /// `M = exp(-2 sin^2((theta_i + theta') / 2) / v) I0e(x) / (v (1 - exp(-2 / v)))`, with `x = cos theta_i cos theta' / v` and
 /// `I0e(x) = exp(-x) I0(x)`, is d'Eon's term without its overflow. `N = e / (s (1 + e)^2 K)`, with `e = exp(-|delta| / s)`.
-/// One exponential is that of `M`, of the Bessel function's series and of `N` together: no product of two tails is denormal.
+/// One exponential serves `M`, the series of the Bessel function and `N` together, so that no product of two tails is denormal.
 #[inline(always)]
 pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
     prepared: &ChiangPrepared<C>,
@@ -48,8 +48,8 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
     let inv_root_i = L::quotient(one, cos_i.sqrt());
 
     L::stage("azimuth: distance from that of R, TT and TRT");
-    // |delta| / 2 of R, TT and TRT, from the tangent of half of it or of what it lacks of an eighth turn. The rest has no
-    // azimuth: TRT's is in its place, and costs nothing.
+    // |delta| / 2 of R, TT and TRT, from its tangent or from the tangent of what it lacks of an eighth turn. The rest has no
+    // azimuth; the azimuth of TRT takes its place, at no cost.
     let [v, w] = [&prepared.azimuth_v, &prepared.azimuth_w];
     let (v, w) = (
         four(&[v[0], v[1], v[2], v[2]]),
@@ -80,8 +80,8 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
     let exponent = Pair(first, Pair(trt, zero));
 
     L::stage("inclination: distance from each lobe's cone, and the Bessel function");
-    // The chord between theta_i and -theta' on the unit circle, squared: 4 sin^2 of half their angle. Of no half angles: their
-    // roundings would count twice, and those of the cosines vanish at the poles with them.
+    // Squared chord between theta_i and -theta' on the unit circle: 4 sin^2 of half their angle. Half angles are avoided because their
+    // rounding would count twice, whereas the rounding of the cosines vanishes with them at the poles.
     let (across, along) = (
         same(cos_i) - four(&prepared.cos_cone),
         same(wi.sin_theta) + four(&prepared.sin_cone),
@@ -91,7 +91,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
     let small = x.lt(Four::splat(SEAM));
     // 1 / sqrt(x).
     let root = same(inv_root_i) * four(&prepared.spread);
-    // Either is held within bounds that it keeps where it is chosen: elsewhere powers would overflow.
+    // Each is clamped to bounds that it keeps where it is selected; elsewhere its powers would overflow.
     let (below, above) = (x.min(Four::splat(8.0)), root.min(Four::splat(1.0)));
     let bessel = Four::select(
         small,
@@ -100,7 +100,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
     );
     let sum = chord_sq.mul_add(four(&m.inv_variance), exponent) + Four::keep(small, x + x);
     L::stage("density of each lobe: M N");
-    // Alone: in vectors of three lobes, what nobody uses overflows.
+    // Kept apart, because in vectors of three lobes the unused number would overflow.
     let densities = gaussian(sum).alone() * bessel * (logistic * four(&m.norm));
     (apart(densities), inv_root_i * inv_root_i)
 }

@@ -1,4 +1,4 @@
-//! Parameters of the energy-conserving fibre.
+//! Parameters of the energy-conserving fibre: the description, its checks and the presets.
 
 use core::f32::consts::{FRAC_PI_4, PI};
 use hairis::ParamError;
@@ -6,16 +6,16 @@ use hairis::model::Precision;
 use hairis::params::{Rule, melanin_absorption, melanin_concentrations};
 use hairis::simd::Lanes;
 
-/// Roughnesses accepted.
+/// Range of accepted roughnesses.
 pub(super) const ROUGHNESS: Rule = Rule::Range([1e-3, 1.0]);
-/// Tilts of the cuticle accepted, rad.
+/// Range of accepted tilts of the cuticle, in radians.
 pub(super) const TILT: Rule = Rule::Range([-FRAC_PI_4, FRAC_PI_4]);
-/// Indices of refraction accepted.
+/// Range of accepted indices of refraction.
 pub(super) const INDEX: Rule = Rule::Range([1.0, 4.0]);
-/// Colours accepted.
+/// Range of accepted colours and of the artist's amounts.
 pub(super) const SHARE: Rule = Rule::Range([0.0, 1.0]);
 
-/// Formula of the lobes' shifts by the tilt of the cuticle's scales.
+/// Formula that turns the tilt of the cuticle's scales into the shifts of the lobes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -23,15 +23,15 @@ pub(super) const SHARE: Rule = Rule::Range([0.0, 1.0]);
     serde(rename_all = "kebab-case")
 )]
 pub enum Shifts {
-    /// `theta_i + theta_o` is shifted by -2, +1 and +4 tilts for R, TT and TRT: d'Eon et al. 2011.
+    /// Shifts of `theta_i + theta_o` by -2, +1 and +4 tilts for R, TT and TRT, after d'Eon et al. 2011.
     #[default]
     DEon,
-    /// It is shifted by `2 p eta - 2` tilts: the limit of small angles for any index of refraction, equal to
-    /// [`DEon`](Self::DEon) at an index of 1.5.
+    /// Shifts by `2 p eta - 2` tilts, which is the limit of small angles for any index of refraction and equals [`DEon`](Self::DEon) at
+    /// an index of 1.5.
     SmallAngle,
 }
 
-/// Parameters of the model of Chiang et al. 2016, not checked yet: set the fields that differ from the default and pass it to
+/// Unchecked parameters of the model of Chiang et al. 2016. Set the fields that differ from the default, and pass the description to
 /// [`ChiangParams::new`].
 ///
 /// - Default: warm brown hair (eumelanin 1.3, pheomelanin .2), a `beta_m` and a `beta_n` of .3, a tilt of 2 degrees, an `eta` of 1.55.
@@ -58,7 +58,7 @@ pub struct ChiangDesc<T = f32> {
 }
 
 impl<T: Copy> ChiangDesc<T> {
-    /// Converts every number of the description.
+    /// Converts every number of the description, for instance to another precision.
     #[inline]
     #[must_use]
     pub fn map<U>(&self, convert: impl Fn(T) -> U) -> ChiangDesc<U> {
@@ -76,7 +76,7 @@ impl<T: Copy> ChiangDesc<T> {
 impl ChiangDesc {
     const DEFAULT: Self = Self::look(1.3, 0.2);
 
-    /// The default with this melanin, for constants.
+    /// Returns the default with this melanin, for use in constants.
     const fn look(eumelanin: f32, pheomelanin: f32) -> Self {
         Self {
             beta_m: 0.3,
@@ -88,11 +88,11 @@ impl ChiangDesc {
         }
     }
 
-    /// Sets the absorption to that of these concentrations of melanin: see [`melanin_absorption`].
+    /// Sets the absorption of these concentrations of melanin: see [`melanin_absorption`].
     ///
     /// # Errors
     ///
-    /// If a concentration is negative or not finite.
+    /// Returns an error if a concentration is negative or not finite.
     #[inline]
     pub fn with_melanin(self, eumelanin: f32, pheomelanin: f32) -> Result<Self, ParamError> {
         let melanin = [eumelanin, pheomelanin];
@@ -103,11 +103,11 @@ impl ChiangDesc {
         })
     }
 
-    /// Sets the absorption to that of an artist's melanin, how dark and how red: see [`melanin_concentrations`].
+    /// Sets the absorption by an artist's controls of melanin, its `amount` and its `redness`: see [`melanin_concentrations`].
     ///
     /// # Errors
     ///
-    /// If `amount` or `redness` is outside `[0, 1]`.
+    /// Returns an error if `amount` or `redness` is outside `[0, 1]`.
     ///
     /// ```
     /// use hairis_variants::{ChiangDesc, ChiangParams};
@@ -121,16 +121,16 @@ impl ChiangDesc {
         self.with_melanin(eumelanin, pheomelanin)
     }
 
-    /// Sets the absorption that gives a mass of such hair about this colour.
+    /// Sets the absorption with which a mass of such hair has approximately this colour.
     ///
-    /// `sigma_a = (ln color / (5.969 - .215 n + 2.532 n^2 - 10.73 n^3 + 5.574 n^4 + .245 n^5))^2`, `n` the `beta_n`
+    /// `sigma_a = (ln color / (5.969 - .215 n + 2.532 n^2 - 10.73 n^3 + 5.574 n^4 + .245 n^5))^2`, with `n` the `beta_n`
     ///
-    /// - Source: Chiang et al. 2016, section 4. It inverts multiple scattering in a mass of hair, not the colour of one fibre.
-    /// - Domain: `color` linear RGB in `[0, 1]`; channels below 1e-3 count as 1e-3. Set `beta_n` before.
+    /// - Source: Chiang et al. 2016, section 4. The formula inverts multiple scattering in a mass of hair, not the colour of one fibre.
+    /// - Domain: `color` is linear RGB in `[0, 1]`; channels below 1e-3 count as 1e-3. Set `beta_n` first: the result depends on it.
     ///
     /// # Errors
     ///
-    /// If a channel is outside `[0, 1]`, or `beta_n` outside its range.
+    /// Returns an error if a channel is outside `[0, 1]`, or if `beta_n` is outside its range.
     #[inline]
     pub fn with_color(self, color: [f32; 3]) -> Result<Self, ParamError> {
         ROUGHNESS.check("beta_n", &[self.beta_n])?;
@@ -146,7 +146,7 @@ impl ChiangDesc {
         })
     }
 
-    /// The colour of a mass of such hair: the inverse of [`with_color`](Self::with_color).
+    /// Returns the approximate colour of a mass of such hair, as the inverse of [`with_color`](Self::with_color).
     #[inline]
     #[must_use]
     pub fn color(&self) -> [f32; 3] {
@@ -155,15 +155,15 @@ impl ChiangDesc {
             .map(|sigma| libm::expf(-libm::sqrtf(sigma) * scale))
     }
 
-    /// Longitudinal width of R, degrees: `sqrt(v)` of [`longitudinal_variance`](Self::longitudinal_variance).
+    /// Returns the longitudinal width of R in degrees: `sqrt(v)` of [`longitudinal_variance`](Self::longitudinal_variance).
     #[inline]
     #[must_use]
     pub fn width_deg(&self) -> f32 {
         libm::sqrtf(self.longitudinal_variance()) * 180.0 / PI
     }
 
-    /// Longitudinal variance v of R: `(.726 m + .812 m^2 + 3.7 m^20)^2`, `m` the `beta_m`. TT has a quarter of it, TRT and
-    /// the rest four times as much.
+    /// Returns the longitudinal variance v of R: `(.726 m + .812 m^2 + 3.7 m^20)^2`, with `m` the `beta_m`. TT has a quarter of this
+    /// variance, and TRT and the rest have four times as much.
     ///
     /// - Source: Chiang et al. 2016, section 4.
     #[inline]
@@ -172,7 +172,7 @@ impl ChiangDesc {
         variance(f64::from(self.beta_m)).rounded()
     }
 
-    /// Scale s of the azimuthal logistic, rad: `sqrt(pi / 8) (.265 n + 1.194 n^2 + 5.372 n^22)`, `n` the `beta_n`.
+    /// Returns the scale s of the azimuthal logistic in radians: `sqrt(pi / 8) (.265 n + 1.194 n^2 + 5.372 n^22)`, with `n` the `beta_n`.
     ///
     /// - Source: Chiang et al. 2016, section 4.
     #[inline]
@@ -181,7 +181,7 @@ impl ChiangDesc {
         scale(f64::from(self.beta_n)).rounded()
     }
 
-    /// Shifts of `theta_i + theta_o` for R, TT, TRT and the rest, rad.
+    /// Returns the shifts of `theta_i + theta_o` for R, TT, TRT and the rest, in radians.
     #[inline]
     #[must_use]
     pub fn shifts_rad(&self) -> [f32; 4] {
@@ -190,7 +190,8 @@ impl ChiangDesc {
     }
 }
 
-/// Longitudinal variance of R for a `beta_m`. In double precision on a host: narrow lobes magnify rounding in their tails.
+/// Returns the longitudinal variance of R for a `beta_m`. Hosts use double precision, because narrow lobes magnify rounding in their
+/// tails.
 #[inline]
 pub(super) fn variance<W: Precision>(m: W) -> W {
     let c = W::constant;
@@ -198,7 +199,7 @@ pub(super) fn variance<W: Precision>(m: W) -> W {
     root * root
 }
 
-/// Scale of the azimuthal logistic for a `beta_n`, rad.
+/// Returns the scale of the azimuthal logistic for a `beta_n`, in radians.
 #[inline]
 pub(super) fn scale<W: Precision>(n: W) -> W {
     let c = W::constant;
@@ -207,7 +208,7 @@ pub(super) fn scale<W: Precision>(n: W) -> W {
         * (c(0.265) + n * (c(1.194) + c(5.372) * n.power(20)))
 }
 
-/// Shifts of the lobes, rad; the mask is set for [`Shifts::SmallAngle`].
+/// Returns the shifts of the lobes in radians; the mask is set for [`Shifts::SmallAngle`].
 #[inline]
 pub(super) fn shifts<W: Precision>(
     tilt: W,
@@ -231,13 +232,13 @@ impl Default for ChiangDesc {
     }
 }
 
-/// Denominator of the absorption of a colour: Chiang et al. 2016, section 4.
+/// Returns the denominator in the absorption of a colour: Chiang et al. 2016, section 4.
 #[inline]
 fn color_denominator(n: f32) -> f32 {
     5.969 + n * (-0.215 + n * (2.532 + n * (-10.73 + n * (5.574 + n * 0.245))))
 }
 
-/// Parameters of the energy-conserving fibre that passed their checks.
+/// Parameters of the energy-conserving fibre that have passed all checks.
 ///
 /// ```
 /// use hairis_variants::{ChiangDesc, ChiangParams};
@@ -253,11 +254,11 @@ fn color_denominator(n: f32) -> f32 {
 pub struct ChiangParams(ChiangDesc);
 
 impl ChiangParams {
-    /// Checks `desc`.
+    /// Checks `desc` and makes parameters of the model from it.
     ///
     /// # Errors
     ///
-    /// The first field outside its range (see [`ChiangDesc`]), with its value; NaN and infinities never pass.
+    /// Returns an error for the first field outside its range (see [`ChiangDesc`]), with its value; NaN and infinities are always rejected.
     #[inline]
     pub fn new(desc: &ChiangDesc) -> Result<Self, ParamError> {
         ROUGHNESS.check("beta_m", &[desc.beta_m])?;
@@ -268,7 +269,7 @@ impl ChiangParams {
         Ok(Self(*desc))
     }
 
-    /// The values that were checked.
+    /// Returns the description with the values that were checked.
     #[inline]
     #[must_use]
     pub const fn desc(&self) -> &ChiangDesc {
@@ -276,44 +277,44 @@ impl ChiangParams {
     }
 }
 
-/// Presets: the default with the melanin of d'Eon et al. 2011 (white: ours).
+/// Presets, which are the default with the melanin of d'Eon et al. 2011; the melanin of white hair is this project's own.
 impl ChiangParams {
-    /// Blond: eumelanin .3.
+    /// Returns the preset of blond hair, with .3 of eumelanin.
     #[inline]
     #[must_use]
     pub const fn blond() -> Self {
         Self(ChiangDesc::look(0.3, 0.0))
     }
 
-    /// Brown: eumelanin 1.3.
+    /// Returns the preset of brown hair, with 1.3 of eumelanin.
     #[inline]
     #[must_use]
     pub const fn brown() -> Self {
         Self(ChiangDesc::look(1.3, 0.0))
     }
 
-    /// Red: eumelanin .25, pheomelanin 1.1.
+    /// Returns the preset of red hair, with .25 of eumelanin and 1.1 of pheomelanin.
     #[inline]
     #[must_use]
     pub const fn red() -> Self {
         Self(ChiangDesc::look(0.25, 1.1))
     }
 
-    /// Black: eumelanin 8.
+    /// Returns the preset of black hair, with 8 of eumelanin.
     #[inline]
     #[must_use]
     pub const fn black() -> Self {
         Self(ChiangDesc::look(8.0, 0.0))
     }
 
-    /// White: eumelanin .02.
+    /// Returns the preset of white hair, with .02 of eumelanin.
     #[inline]
     #[must_use]
     pub const fn white() -> Self {
         Self(ChiangDesc::look(0.02, 0.0))
     }
 
-    /// Every preset with its name, for menus and test grids.
+    /// Returns every preset with its name, for menus and test grids.
     #[inline]
     #[must_use]
     pub const fn presets() -> [(&'static str, Self); 6] {

@@ -1,4 +1,4 @@
-//! A direction from three uniform numbers.
+//! Sampling of a direction of one lobe by three uniform numbers.
 
 use super::ChiangPrepared;
 use core::f32::consts::{LN_2, PI};
@@ -6,7 +6,7 @@ use hairis::model::Direction;
 use hairis::model::math::{log2, log2_one_plus, sin_cos_half_turn};
 use hairis::simd::{Broadcast, Choice, Lanes};
 
-/// A direction of a lobe: the angle from its cone, the turn about the cone, and the azimuth.
+/// Draws a direction of a lobe: the angle from its cone, the turn about the cone, and the azimuth.
 #[inline(always)]
 pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
     prepared: &ChiangPrepared<C>,
@@ -18,7 +18,7 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
     let m = &prepared.widths;
 
     L::stage("inclination: a point about the lobe's cone");
-    // After d'Eon 2013: 1 less the cosine of the angle from the cone; the turn's cosine is even.
+    // After d'Eon 2013: 1 less the cosine of the angle from the cone. The cosine of the turn is even.
     let cut = C::look_up(&m.cut, lobe);
     let by = C::look_up(&m.variance, lobe) * -LN_2;
     let drop = zero.max((log2_one_plus(-(xi[1] * cut)) * by).min(two));
@@ -35,7 +35,7 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
     let cos_i = plane.mul_add(plane, across * across).sqrt();
 
     L::stage("azimuth: the trimmed logistic by inversion");
-    // The trimmed logistic by inversion; that of the rest is uniform.
+    // The trimmed logistic by inversion; the azimuth of the rest is uniform.
     let kept = m.kept.lanes();
     let edge = (one - kept) * 0.5;
     let ratio = L::quotient(xi[0].mul_add(kept, edge), (one - xi[0]).mul_add(kept, edge));

@@ -1,4 +1,4 @@
-//! The model in the registry, and its parameters as fields.
+//! Registry entry of Kajiya and Kay's model, and its parameters as fields.
 
 use super::params::EXPONENT;
 use super::{Form, KajiyaKay, KajiyaKayDesc, KajiyaKayMaterial, KajiyaKayParams};

@@ -1,17 +1,17 @@
-//! Parameters of Kajiya and Kay's model.
+//! Parameters of Kajiya and Kay's model: the description, its checks and the presets.
 
 use core::f32::consts::{LN_2, PI};
 use hairis::ParamError;
 use hairis::model::Precision;
 use hairis::params::Rule;
 
-/// Exponents accepted.
+/// Range of accepted exponents.
 pub(super) const EXPONENT: Rule = Rule::Range(EXPONENTS);
 const EXPONENTS: [f32; 2] = [1.0, 1e4];
-/// Half widths of the highlight accepted, degrees: those of the exponents.
+/// Range of accepted half widths of the highlight, in degrees, which corresponds to the range of exponents.
 const WIDTHS: Rule = Rule::Degrees([0.675, 60.0]);
 
-/// Dependence of the highlight on the light's inclination.
+/// Form of the highlight, which decides how it depends on the inclination of the light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -19,20 +19,21 @@ const WIDTHS: Rule = Rule::Degrees([0.675, 60.0]);
     serde(rename_all = "kebab-case")
 )]
 pub enum Form {
-    /// `S` is a function of `theta_i + theta_o` alone: reciprocal. The light's irradiance falls as `cos theta_i`.
+    /// Reciprocal form: `S` is a function of `theta_i + theta_o` alone. The irradiance of the light falls as `cos theta_i`.
     #[default]
     Reciprocal,
-    /// `S` has `1 / cos theta_i`, so that the highlight is as bright under grazing light as in the publication. Not reciprocal.
+    /// Form of the publication, which is not reciprocal: `S` has a factor `1 / cos theta_i`, so that the highlight is as bright under
+    /// grazing light as in the publication.
     Published,
 }
 
-/// Parameters of the model of Kajiya & Kay 1989, not checked yet: set the fields that differ from the default and pass it to
+/// Unchecked parameters of the model of Kajiya & Kay 1989. Set the fields that differ from the default, and pass the description to
 /// [`KajiyaKayParams::new`].
 ///
-/// - Units: `kd` and `ks` are linear RGB albedos at `theta_o = 0`, so that `kd + ks <= 1` never gains energy. The constants of
-///   the publication have no normalisation: `kd` is `pi^2` times the published one, `ks` is `2 pi B(exponent + 1)` times it,
-///   with `B(n)` the integral of `cos^n` over `[-pi/2, pi/2]`.
-/// - Default: grey `kd` .3 and `ks` .2, exponent 80.
+/// - Units: `kd` and `ks` are linear RGB albedos at `theta_o = 0`, so that a material with `kd + ks <= 1` never gains energy. The
+///   constants of the publication are not normalised: `kd` is `pi^2` times the published constant, and `ks` is
+///   `2 pi B(exponent + 1)` times the published constant, with `B(n)` the integral of `cos^n` over `[-pi/2, pi/2]`.
+/// - Default: grey hair with a `kd` of .3, a `ks` of .2 and an exponent of 80.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -46,13 +47,13 @@ pub struct KajiyaKayDesc<T = f32> {
     pub ks: [T; 3],
     /// Exponent of the highlight, in `[1, 1e4]`.
     pub exponent: T,
-    /// Form of the highlight.
+    /// Form of the highlight, reciprocal by default.
     #[cfg_attr(feature = "serde", serde(default))]
     pub form: Form,
 }
 
 impl<T: Copy> KajiyaKayDesc<T> {
-    /// Converts every number of the description.
+    /// Converts every number of the description, for instance to another precision.
     #[inline]
     #[must_use]
     pub fn map<U>(&self, convert: impl Fn(T) -> U) -> KajiyaKayDesc<U> {
@@ -73,13 +74,13 @@ impl KajiyaKayDesc {
         form: Form::Reciprocal,
     };
 
-    /// Sets the highlight to this half width at half height in `theta_i + theta_o`.
+    /// Sets the exponent that gives the highlight this half width at half height in `theta_i + theta_o`.
     ///
     /// `exponent = -ln 2 / ln cos width`
     ///
     /// # Errors
     ///
-    /// If `width_deg` is outside `[0.675, 60]` degrees.
+    /// Returns an error if `width_deg` is outside `[0.675, 60]` degrees.
     ///
     /// ```
     /// use hairis_variants::KajiyaKayDesc;
@@ -90,7 +91,7 @@ impl KajiyaKayDesc {
     #[inline]
     pub fn with_width_deg(self, width_deg: f32) -> Result<Self, ParamError> {
         WIDTHS.check("width_deg", &[width_deg])?;
-        // ln cos w = ln(1 - 2 sin^2(w/2)): a narrow highlight loses nothing.
+        // ln cos w = ln(1 - 2 sin^2(w/2)), which loses no digits for a narrow highlight.
         let sin = libm::sinf(0.5 * width_deg * PI / 180.0);
         let exponent = -LN_2 / libm::log1pf(-2.0 * sin * sin);
         Ok(Self {
@@ -99,7 +100,7 @@ impl KajiyaKayDesc {
         })
     }
 
-    /// Half width of the highlight at half height in `theta_i + theta_o`, degrees: `acos(2^(-1 / exponent))`.
+    /// Returns the half width of the highlight at half height in `theta_i + theta_o`, in degrees: `acos(2^(-1 / exponent))`.
     #[inline]
     #[must_use]
     pub fn width_deg(&self) -> f32 {
@@ -109,7 +110,9 @@ impl KajiyaKayDesc {
     }
 }
 
-/// Integral of `cos^n` over `[-pi/2, pi/2]`, for `n` above -1 (in single precision, from 1): `sqrt(pi) gamma(n/2 + 1/2) / gamma(n/2 + 1)`.
+/// Returns the integral of `cos^n` over `[-pi/2, pi/2]`, which is `sqrt(pi) gamma(n/2 + 1/2) / gamma(n/2 + 1)`.
+///
+/// - Domain: `n` above -1; in single precision, `n` from 1.
 ///
 /// ```
 /// use hairis_variants::kajiya_kay::cosine_integral;
@@ -129,7 +132,7 @@ impl Default for KajiyaKayDesc {
     }
 }
 
-/// Parameters of Kajiya and Kay's model that passed their checks.
+/// Parameters of Kajiya and Kay's model that have passed all checks.
 ///
 /// ```
 /// use hairis_variants::{KajiyaKayDesc, KajiyaKayParams};
@@ -159,14 +162,14 @@ const fn look(kd: [f32; 3], ks: [f32; 3], exponent: f32) -> KajiyaKayParams {
     })
 }
 
-/// Presets. The looks are ours; `kd + ks` is below 1 in every channel, so that no preset gains energy.
+/// Presets, whose looks are this project's own. In each of them `kd + ks` is below 1 in every channel, so that none gains energy.
 impl KajiyaKayParams {
-    /// Checks `desc`.
+    /// Checks `desc` and makes parameters of the model from it.
     ///
     /// # Errors
     ///
-    /// The first field outside its range (see [`KajiyaKayDesc`]), with its value; NaN and infinities never pass. `kd + ks` above
-    /// 1 is legal, and gains energy.
+    /// Returns an error for the first field outside its range (see [`KajiyaKayDesc`]), with its value; NaN and infinities are always
+    /// rejected. A sum `kd + ks` above 1 is accepted, although the material then gains energy.
     #[inline]
     pub fn new(desc: &KajiyaKayDesc) -> Result<Self, ParamError> {
         Rule::NotNegative.check("kd", &desc.kd)?;
@@ -175,18 +178,18 @@ impl KajiyaKayParams {
         Ok(Self(*desc))
     }
 
-    /// The values that were checked.
+    /// Returns the description with the values that were checked.
     #[inline]
     #[must_use]
     pub const fn desc(&self) -> &KajiyaKayDesc {
         &self.0
     }
 
-    /// Multiplies both albedos by `factor`.
+    /// Multiplies both albedos by `factor`, and leaves the highlight's shape as it is.
     ///
     /// # Errors
     ///
-    /// If `factor` is negative or not finite, or a product overflows.
+    /// Returns an error if `factor` is negative or not finite, or if a product overflows.
     #[inline]
     pub fn scaled(&self, factor: f32) -> Result<Self, ParamError> {
         Rule::NotNegative.check("factor", &[factor])?;
@@ -198,42 +201,42 @@ impl KajiyaKayParams {
         })
     }
 
-    /// Blond: a highlight of 8.7 degrees.
+    /// Returns the preset of blond hair, with a highlight of 8.7 degrees.
     #[inline]
     #[must_use]
     pub const fn blond() -> Self {
         BLOND
     }
 
-    /// Brown: a highlight of 7.5 degrees.
+    /// Returns the preset of brown hair, with a highlight of 7.5 degrees.
     #[inline]
     #[must_use]
     pub const fn brown() -> Self {
         BROWN
     }
 
-    /// Red: a highlight of 8.0 degrees.
+    /// Returns the preset of red hair, with a highlight of 8.0 degrees.
     #[inline]
     #[must_use]
     pub const fn red() -> Self {
         RED
     }
 
-    /// Black: a highlight of 6.2 degrees on hardly any diffuse light.
+    /// Returns the preset of black hair, with a highlight of 6.2 degrees on hardly any diffuse light.
     #[inline]
     #[must_use]
     pub const fn black() -> Self {
         BLACK
     }
 
-    /// White: a highlight of 10.6 degrees.
+    /// Returns the preset of white hair, with a highlight of 10.6 degrees.
     #[inline]
     #[must_use]
     pub const fn white() -> Self {
         WHITE
     }
 
-    /// Every preset with its name, for menus and test grids.
+    /// Returns every preset with its name, for menus and test grids.
     #[inline]
     #[must_use]
     pub const fn presets() -> [(&'static str, Self); 6] {

@@ -1,17 +1,17 @@
-//! Values of fields: plain data, whatever the model.
+//! Values of fields as plain data, whatever the model.
 
 use super::{Field, Kind};
 use core::fmt;
 
-/// Refusal of [`Values::set`] and [`Values::set_word`].
+/// Error of [`Values::set`] and [`Values::set_word`], which says what does not fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FieldError {
-    /// There is no field of this name.
+    /// The model has no field of this name.
     Name,
-    /// The field has this many numbers.
+    /// The field has this count of numbers, and another count was given.
     Count(usize),
-    /// The field has these words.
+    /// The field has these words, and none of them was given; the list is empty for a field of numbers.
     Word(&'static [&'static str]),
 }
 
@@ -29,7 +29,7 @@ impl fmt::Display for FieldError {
 
 impl core::error::Error for FieldError {}
 
-/// Values of fields: plain data, whatever the model. Parameters are made of single precision; the formulas take any.
+/// Values of a model's fields as plain data. Parameters are made from single precision, and the formulas accept any type of number.
 #[derive(Clone, Copy, Debug)]
 pub struct Values<T = f32> {
     fields: &'static [Field],
@@ -40,7 +40,7 @@ pub struct Values<T = f32> {
 const MOST: usize = 32;
 
 impl<T: Copy + Default> Values<T> {
-    /// No value yet.
+    /// Returns values of which no field has been set yet.
     #[inline]
     #[must_use]
     pub fn none(fields: &'static [Field]) -> Self {
@@ -53,7 +53,7 @@ impl<T: Copy + Default> Values<T> {
 }
 
 impl<T: Copy> Values<T> {
-    /// Converts the numbers of every field.
+    /// Converts the numbers of every field, for instance to another precision.
     #[inline]
     #[must_use]
     pub fn map<U>(&self, convert: impl FnMut(T) -> U) -> Values<U> {
@@ -64,29 +64,29 @@ impl<T: Copy> Values<T> {
         }
     }
 
-    /// The fields.
+    /// Returns the fields that the values belong to.
     #[inline]
     #[must_use]
     pub const fn fields(&self) -> &'static [Field] {
         self.fields
     }
 
-    /// Sets the numbers of the field `name`, and takes away the fields that it stands for.
+    /// Sets the numbers of the field `name`, and removes the values of the fields that it takes the place of.
     ///
     /// # Errors
     ///
-    /// If there is no such field, or it has another count of numbers.
+    /// Returns an error if there is no such field, or if it has another count of numbers.
     #[inline]
     pub fn set(&mut self, name: &str, numbers: &[T]) -> Result<(), FieldError> {
         let index = self.index(name).ok_or(FieldError::Name)?;
         self.set_at(index, numbers)
     }
 
-    /// Sets the numbers of the field of this index: see [`set`](Self::set).
+    /// Sets the numbers of the field at `index`, as [`set`](Self::set) does by name.
     ///
     /// # Errors
     ///
-    /// If there is no such field, or it has another count of numbers.
+    /// Returns an error if there is no such field, or if it has another count of numbers.
     #[inline]
     pub fn set_at(&mut self, index: usize, numbers: &[T]) -> Result<(), FieldError> {
         let field = self.fields.get(index).ok_or(FieldError::Name)?;
@@ -105,11 +105,11 @@ impl<T: Copy> Values<T> {
         Ok(())
     }
 
-    /// With a value for the field `name`: see [`set`](Self::set).
+    /// Returns the values with these numbers for the field `name`: see [`set`](Self::set).
     ///
     /// # Panics
     ///
-    /// If there is no such field, or it has another count of numbers.
+    /// Panics if there is no such field, or if it has another count of numbers.
     #[inline]
     #[must_use]
     pub fn with(mut self, name: &str, numbers: &[T]) -> Self {
@@ -118,11 +118,11 @@ impl<T: Copy> Values<T> {
         self
     }
 
-    /// Without a value for the field `name`.
+    /// Returns the values with the value of the field `name` removed.
     ///
     /// # Panics
     ///
-    /// If there is no such field.
+    /// Panics if there is no such field.
     #[inline]
     #[must_use]
     pub fn without(mut self, name: &str) -> Self {
@@ -130,40 +130,40 @@ impl<T: Copy> Values<T> {
         self
     }
 
-    /// Whether the field `name` has a value.
+    /// Returns true if the field `name` has a value.
     ///
     /// # Panics
     ///
-    /// If there is no such field.
+    /// Panics if there is no such field.
     #[inline]
     #[must_use]
     pub fn has(&self, name: &str) -> bool {
         self.has_at(self.known(name))
     }
 
-    /// The numbers of the field `name`, 0 if it has no value.
+    /// Returns the numbers of the field `name`. They are 0 if the field was never set; a removed value leaves its numbers behind.
     ///
     /// # Panics
     ///
-    /// If there is no such field.
+    /// Panics if there is no such field.
     #[inline]
     #[must_use]
     pub fn numbers(&self, name: &str) -> &[T] {
         self.numbers_at(self.known(name))
     }
 
-    /// Whether the field of this index has a value.
+    /// Returns true if the field at `index` has a value, and false if there is no such field.
     #[inline]
     #[must_use]
     pub const fn has_at(&self, index: usize) -> bool {
         index < MOST && self.given >> index & 1 == 1
     }
 
-    /// The numbers of the field of this index, 0 if it has no value.
+    /// Returns the numbers of the field at `index`, as [`numbers`](Self::numbers) does by name.
     ///
     /// # Panics
     ///
-    /// If there is no such field.
+    /// Panics if there is no such field.
     #[inline]
     #[must_use]
     pub fn numbers_at(&self, index: usize) -> &[T] {
@@ -171,22 +171,22 @@ impl<T: Copy> Values<T> {
         &self.numbers[at..at + self.fields[index].kind.width()]
     }
 
-    /// The `N` numbers of the field `name`: see [`numbers`](Self::numbers).
+    /// Returns the `N` numbers of the field `name` as an array: see [`numbers`](Self::numbers).
     ///
     /// # Panics
     ///
-    /// If there is no such field, or it has another count of numbers.
+    /// Panics if there is no such field, or if it has another count of numbers.
     #[inline]
     #[must_use]
     pub fn get<const N: usize>(&self, name: &str) -> [T; N] {
         self.get_at(self.known(name))
     }
 
-    /// The `N` numbers of the field of this index, 0 if it has no value.
+    /// Returns the `N` numbers of the field at `index` as an array: see [`numbers`](Self::numbers).
     ///
     /// # Panics
     ///
-    /// If there is no such field, or it has another count of numbers.
+    /// Panics if there is no such field, or if it has another count of numbers.
     #[inline]
     #[must_use]
     pub fn get_at<const N: usize>(&self, index: usize) -> [T; N] {
@@ -196,11 +196,11 @@ impl<T: Copy> Values<T> {
         numbers
     }
 
-    /// The number of the field of this index, 0 if it has no value.
+    /// Returns the only number of the field at `index`: see [`numbers`](Self::numbers).
     ///
     /// # Panics
     ///
-    /// If there is no such field, or it has several numbers.
+    /// Panics if there is no such field, or if it has several numbers.
     #[inline]
     #[must_use]
     pub fn number_at(&self, index: usize) -> T {
@@ -208,20 +208,20 @@ impl<T: Copy> Values<T> {
         number
     }
 
-    /// The index of the field `name`.
+    /// Returns the index of the field `name`, or `None` if there is no such field.
     #[inline]
     #[must_use]
     pub fn index(&self, name: &str) -> Option<usize> {
         self.fields.iter().position(|field| field.name == name)
     }
 
-    /// The index of a field that there is.
+    /// Returns the index of the field `name`, which must exist.
     #[inline]
     fn known(&self, name: &str) -> usize {
         self.index(name).expect("a field of the model")
     }
 
-    /// Offset of the first number of a field.
+    /// Returns the place of the field's first number among all numbers.
     #[inline]
     fn offset(&self, index: usize) -> usize {
         let before = &self.fields[..index];
@@ -230,14 +230,14 @@ impl<T: Copy> Values<T> {
 }
 
 impl Values {
-    /// Largest count of numbers of a model, and of its fields.
+    /// Largest count of numbers that a model may have, and of fields.
     pub const MOST: usize = MOST;
 
-    /// Sets the word of the field `name`, and takes away the fields that it stands for.
+    /// Sets the word of the field `name`, and removes the values of the fields that it takes the place of.
     ///
     /// # Errors
     ///
-    /// If there is no such field, or it has no such word.
+    /// Returns an error if there is no such field, or if it has no such word.
     #[inline]
     pub fn set_word(&mut self, name: &str, word: &str) -> Result<(), FieldError> {
         let index = self.index(name).ok_or(FieldError::Name)?;
@@ -250,11 +250,11 @@ impl Values {
         self.set_at(index, &[f32::from(place)])
     }
 
-    /// With a word for the field `name`: see [`set_word`](Self::set_word).
+    /// Returns the values with this word for the field `name`: see [`set_word`](Self::set_word).
     ///
     /// # Panics
     ///
-    /// If there is no such field, or it has no such word.
+    /// Panics if there is no such field, or if it has no such word.
     #[inline]
     #[must_use]
     pub fn with_word(mut self, name: &str, word: &str) -> Self {
@@ -263,11 +263,11 @@ impl Values {
         self
     }
 
-    /// The word of the field `name`, its first if it has no value.
+    /// Returns the word of the field `name`, or its first word if the field was never set.
     ///
     /// # Panics
     ///
-    /// If there is no such field, or it has no words.
+    /// Panics if there is no such field, or if it has no words.
     #[inline]
     #[must_use]
     pub fn word(&self, name: &str) -> &'static str {

@@ -1,10 +1,10 @@
 //! Public handles of a model that is chosen at run time.
 //!
-//! An enum per handle keeps the handle as plain data; its calls are those of the object-safe traits of `hairis::model`, to
-//! which it dereferences. Each model is compiled once, here, and the choice costs one jump. Handles have the types of [`Conserving`],
-//! whether they conserve energy or not, because a second type would be compiled as well.
+//! Each handle is an enum, so that it stays plain data. BSDFs dereference to the object-safe traits of `hairis::model`, which provide
+//! their calls. Each model is compiled once, in this crate, and the choice costs one jump. Handles have the types of [`Conserving`],
+//! whether they conserve energy or not, because a second type would have to be compiled as well.
 
-/// Calls a method of the handle of any model; last, the enum that its result goes into.
+/// Calls a method of the handle, whichever its model. The last argument, if given, names the enum that the result goes into.
 macro_rules! each {
     ([$($variant:ident: $model:ty;)*] $this:expr, $one:ident => $call:expr) => {
         match $this {
@@ -19,7 +19,7 @@ macro_rules! each {
 }
 pub(super) use each;
 
-/// The enum of a handle, and its conversions.
+/// Declares the enum of a handle and its conversions.
 macro_rules! handle {
     ($(#[$doc:meta])* $any:ident $handle:ident [$($variant:ident: $model:ty;)*]) => {
         $(#[$doc])*
@@ -49,7 +49,7 @@ macro_rules! handle {
         )*
 
         impl $any {
-            /// The model.
+            /// Returns the model that this handle was made of.
             #[inline]
             #[must_use]
             pub const fn model(&self) -> ModelId {
@@ -58,7 +58,7 @@ macro_rules! handle {
                 }
             }
 
-            /// Selects another instruction set; handles made from this one inherit it.
+            /// Selects another instruction set, which handles made from this one inherit.
             #[inline]
             #[must_use]
             pub const fn with_level(self, level: Level) -> Self {
@@ -71,7 +71,7 @@ macro_rules! handle {
 }
 pub(super) use handle;
 
-/// The trait object that a handle dereferences to.
+/// Lets a handle dereference to a trait object.
 macro_rules! object {
     ($any:ident $object:ident [$($variant:ident: $model:ty;)*]) => {
         impl Deref for $any {
@@ -97,11 +97,11 @@ macro_rules! object {
 }
 pub(super) use object;
 
-/// BSDFs with some lobes, or with energy conserved.
+/// Adds the calls that restrict a BSDF to some lobes or conserve its energy.
 macro_rules! restricted {
     ($($any:ident)*) => { $(
         impl $any {
-            /// Keeps some lobes alone: the others neither scatter nor are sampled.
+            /// Keeps only the lobes of the mask; the others neither scatter nor are sampled.
             #[inline]
             #[must_use]
             pub fn with_lobes(mut self, lobes: LobeMask) -> Self {
@@ -109,8 +109,8 @@ macro_rules! restricted {
                 self
             }
 
-            /// Limits the scattered light to the light that arrives, by integrals of the lobes: see [`Bsdf::conserving`]. Of a
-            /// material, [`AnyMaterial::conserving`] does it for next to nothing per hit.
+            /// Limits the scattered light to the light that arrives, by integrals of the lobes: see [`Bsdf::conserving`].
+            /// [`AnyMaterial::conserving`] does so for a whole material, at next to no cost per hit.
             #[inline]
             #[must_use]
             pub fn conserving(mut self) -> Self {
@@ -122,11 +122,11 @@ macro_rules! restricted {
 }
 pub(super) use restricted;
 
-/// The handles of all models.
+/// Declares the run-time handles, each with a variant per model of the list.
 macro_rules! handles {
     ($models:tt) => {
         any::handle! {
-            /// A material of any model of the list: see [`Material`].
+            /// Material of any model of the registry, chosen at run time: see [`Material`].
             ///
             /// ```
             /// use hairis::{HairParams, Material};
@@ -142,11 +142,11 @@ macro_rules! handles {
             AnyMaterial8 Material8 $models
         }
         any::handle! {
-            /// A BSDF of any model: see [`Bsdf`]. Its calls are those of [`DynBsdf`].
+            /// BSDF of any model of the registry: see [`Bsdf`]. It dereferences to [`DynBsdf`], which has its calls.
             AnyBsdf Bsdf $models
         }
         any::handle! {
-            /// Eight BSDFs of one model, one per lane: see [`Bsdf8`]. Its calls are those of [`DynBsdf8`].
+            /// Eight BSDFs of one model, one per lane: see [`Bsdf8`]. They dereference to [`DynBsdf8`], which has their calls.
             AnyBsdf8 Bsdf8 $models
         }
         any::object! { AnyBsdf DynBsdf $models }
@@ -154,7 +154,7 @@ macro_rules! handles {
         any::restricted! { AnyBsdf AnyBsdf8 }
 
         impl AnyMaterial {
-            /// The BSDF at a hit: a [`Hit`], or `wo` alone.
+            /// Prepares the BSDF at a hit, which is given as a [`Hit`] or as `wo` alone.
             #[inline]
             #[must_use]
             pub fn prepare(&self, hit: impl Into<Hit>) -> AnyBsdf {
@@ -162,14 +162,14 @@ macro_rules! handles {
                 self.prepare_hit(hit.wo.into(), hit.h)
             }
 
-            /// Scalars, as a vector by value would go through memory.
+            /// Takes scalars, because a vector that is passed by value would go through memory.
             #[inline(never)]
             fn prepare_hit(&self, wo: Vec3, h: f32) -> AnyBsdf {
                 let hit = Hit { wo: wo.into(), h };
                 any::each!($models self, material => material.prepare(hit), AnyBsdf)
             }
 
-            /// The BSDFs at eight hits on this material, one per lane: a [`Hit8`], or eight `wo`.
+            /// Prepares the BSDFs at eight hits on this material, one per lane, which are given as a [`Hit8`] or as eight `wo`.
             #[inline]
             #[must_use]
             pub fn prepare8(&self, hits: impl Into<Hit8>) -> AnyBsdf8 {
@@ -181,7 +181,7 @@ macro_rules! handles {
                 any::each!($models self, material => material.prepare8(hits), AnyBsdf8)
             }
 
-            /// The material with energy conservation: see [`Conserving`]. It takes as long to make as some hundred hits.
+            /// Returns the material with energy conservation: see [`Conserving`]. Making it takes about as long as a hundred hits.
             ///
             /// ```
             /// use hairis::PerLobe;
@@ -199,21 +199,21 @@ macro_rules! handles {
                 any::each!($models self, material => material.conserving(), Self)
             }
 
-            /// Whether each hit integrates the lobes: see [`Material::integrates`].
+            /// Returns true if each hit integrates the lobes: see [`Material::integrates`].
             #[inline(never)]
             #[must_use]
             pub fn integrates(&self) -> bool {
                 any::each!($models self, material => material.integrates())
             }
 
-            /// The largest directional albedo: see [`Material::max_albedo`].
+            /// Returns the largest directional albedo of the material: see [`Material::max_albedo`].
             #[inline(never)]
             #[must_use]
             pub fn max_albedo(&self) -> f32 {
                 any::each!($models self, material => material.max_albedo())
             }
 
-            /// The factor that keeps the directional albedo at most 1: see [`Material::conserving_scale`].
+            /// Returns the factor that keeps the directional albedo at most 1: see [`Material::conserving_scale`].
             #[inline(never)]
             #[must_use]
             pub fn conserving_scale(&self) -> f32 {
@@ -224,7 +224,7 @@ macro_rules! handles {
         impl AnyMaterial8 {
             any::pack! { $models }
 
-            /// The BSDFs at eight hits, lane by lane: a [`Hit8`], or eight `wo`.
+            /// Prepares the BSDFs at eight hits, lane by lane, which are given as a [`Hit8`] or as eight `wo`.
             #[inline]
             #[must_use]
             pub fn prepare8(&self, hits: impl Into<Hit8>) -> AnyBsdf8 {
@@ -238,11 +238,11 @@ macro_rules! handles {
         }
 
         impl AnyBsdf8 {
-            /// The BSDF of one lane.
+            /// Returns the BSDF of one of the eight lanes as a scalar handle.
             ///
             /// # Panics
             ///
-            /// If `lane` is above 7.
+            /// Panics if `lane` is above 7.
             #[inline(never)]
             #[must_use]
             pub fn lane(&self, lane: usize) -> AnyBsdf {
@@ -253,10 +253,10 @@ macro_rules! handles {
 }
 pub(super) use handles;
 
-/// [`AnyMaterial8`](super::AnyMaterial8) of eight materials.
+/// Declares the constructor of [`AnyMaterial8`](super::AnyMaterial8) from eight materials.
 macro_rules! pack {
     ([$($variant:ident: $model:ty;)*]) => {
-        /// Eight materials, one per lane; `None` unless all are of one model.
+        /// Packs eight materials, one per lane. Returns `None` unless all of them have the same model.
         #[inline(never)]
         #[must_use]
         pub fn pack(materials: [&AnyMaterial; 8]) -> Option<Self> {

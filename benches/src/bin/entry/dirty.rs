@@ -1,10 +1,10 @@
 //! Cost of entry points for a host that calls them with the upper halves of the vector registers dirty.
 //!
-//! Code for AVX should end in `vzeroupper`; some hosts' code does not (a just-in-time compiler was one). Until then every
-//! legacy SSE instruction merges its result with the upper half of the register, and waits for the last write to that
-//! half; CPUs before Skylake save and restore all upper halves instead, once. Before each call the program either
-//! dirties all sixteen registers, or does the same and cleans up. Packets and slices must take no more than
-//! [`MOST`] times as long; scalar code is legacy SSE in a plain build, and not judged.
+//! Code for AVX should end in `vzeroupper`, but the code of some hosts does not (a just-in-time compiler was one). Until the upper
+//! halves are clean, every legacy SSE instruction merges its result with the upper half of its register, and waits for the last write
+//! to that half. CPUs before Skylake instead save and restore all upper halves once. Before each call the program either leaves all
+//! sixteen registers dirty, or writes them in the same way and then zeroes their upper halves. Dirty registers must not slow packets
+//! and slices down by more than the factor [`MOST`]; scalar code is not judged, because a plain build compiles it to legacy SSE.
 #![allow(
     unsafe_code,
     reason = "assembly that writes the vector registers, where the CPU has them"
@@ -13,14 +13,14 @@
 use hairis_benches::{Name, Task};
 use std::time::Instant;
 
-/// Largest factor of packets and slices.
+/// Largest factor by which dirty registers may slow packets and slices down.
 const MOST: f64 = 1.3;
-/// Rounds, each of a clean and a dirty stretch.
+/// Number of rounds, each of which times a clean and a dirty stretch.
 const ROUNDS: usize = 31;
-/// Length of a stretch, s.
+/// Duration of a stretch, in seconds.
 const STRETCH: f64 = 3e-4;
 
-/// Whether this CPU has upper halves.
+/// Returns true if this CPU has AVX2, and so has upper halves that can be dirty.
 pub(crate) fn can_be() -> bool {
     #[cfg(target_arch = "x86_64")]
     let has = std::arch::is_x86_feature_detected!("avx2");
@@ -29,7 +29,7 @@ pub(crate) fn can_be() -> bool {
     has
 }
 
-/// Writes all sixteen registers in full, and zeroes their upper halves if `clean`. The CPU [has them](can_be).
+/// Writes all sixteen registers in full, and zeroes their upper halves if `clean`. Requires a CPU that [has upper halves](can_be).
 #[inline(always)]
 fn write_registers(clean: bool) {
     #[cfg(target_arch = "x86_64")]
@@ -62,7 +62,7 @@ fn write_registers(clean: bool) {
     let _ = clean;
 }
 
-/// Times an entry point both ways, in turns, and prints what it found. Whether it is as fast as [`MOST`] says.
+/// Times an entry point with clean and with dirty registers in turns, and prints the result. Returns true if it meets [`MOST`].
 pub(crate) fn is_harmless<T: Task>(name: &Name, task: &mut T) -> bool {
     stretch(task, 1, true);
     #[expect(
@@ -89,7 +89,7 @@ pub(crate) fn is_harmless<T: Task>(name: &Name, task: &mut T) -> bool {
     ratio <= MOST
 }
 
-/// Time of so many passes, s.
+/// Returns the time of `passes` passes, in seconds.
 #[inline(never)]
 fn stretch<T: Task>(task: &mut T, passes: u32, clean: bool) -> f64 {
     let start = Instant::now();
@@ -99,7 +99,7 @@ fn stretch<T: Task>(task: &mut T, passes: u32, clean: bool) -> f64 {
             task.call(index);
         }
     }
-    // The next stretch begins clean.
+    // Clean up, so that the next stretch begins with clean registers.
     write_registers(true);
     start.elapsed().as_secs_f64()
 }

@@ -1,7 +1,7 @@
-//! Floating-point exceptions of calls on one lane, in a program compiled as a host's is.
+//! Floating-point exceptions raised by calls on one lane, in a program that is compiled as a host's program is.
 //!
-//! The compiler may make vectors of scalar code and compute in their unused lanes what raises an exception: whether it does
-//! depends on its options, and the tests are compiled with others.
+//! The compiler may vectorise scalar code, and the values it computes in unused lanes may raise an exception. Whether they do depends
+//! on the compiler options, and those of the tests are different.
 
 use core::hint::black_box;
 use hairis::model::{LobeEval, Model};
@@ -11,7 +11,7 @@ use hairis_benches::entries::is_compiled;
 use hairis_benches::inputs::{Inputs, materials};
 use hairis_variants::{ModelId, Registered, Visitor};
 
-/// Invalid, division by zero, overflow.
+/// Flags of the exceptions that are counted: invalid operation, division by zero and overflow.
 const FLAGS: u32 = 1 | 4 | 8;
 
 macro_rules! calls {
@@ -33,7 +33,7 @@ calls! {
     conserving(bsdf: &Bsdf<M>) -> Bsdf<M> = bsdf.conserving();
 }
 
-/// Prints how many calls of each model raise an exception. Whether there are none.
+/// Prints for each model how many calls raise an exception. Returns true if no call does.
 pub(crate) fn check() -> bool {
     let inputs = Inputs::draw();
     ModelId::ALL
@@ -109,7 +109,7 @@ impl Visitor for OfModel<'_> {
     }
 }
 
-/// Whether `f` raises an exception.
+/// Returns true if `f` raises one of the exceptions in [`FLAGS`].
 fn raises<T>(f: impl FnOnce() -> T) -> bool {
     let before = control();
     set_control(before & !0x3f);

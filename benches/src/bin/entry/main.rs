@@ -1,14 +1,15 @@
-//! One entry point at a time, for callgrind and for timing by hand.
+//! Program that runs one entry point at a time, for callgrind and for timing by hand.
 //!
-//! - `entry list`: the names of all entry points on every level of this CPU.
-//! - `entry run NAME PASSES`: passes over the inputs and nothing else: their cost is the difference of two runs with
-//!   different numbers of passes.
-//! - `entry time NAME SECONDS`: ns per direction, the median of stretches of a millisecond.
-//! - `entry dirty [NAME]`: which packets and slices suffer from dirty upper halves of the vector registers; fails if one does.
-//! - `entry exceptions`: which calls on one lane raise floating-point exceptions; fails if one does.
-//! - `entry keep`: runs nothing; keeps the functions whose size `.ci/sizes.sh` reports in the program.
+//! - `entry list`: prints the names of all entry points on every level of this CPU.
+//! - `entry run NAME PASSES`: makes passes over the inputs and nothing else, so that the cost of a pass is the difference between two
+//!   runs with different numbers of passes.
+//! - `entry time NAME SECONDS`: prints the time per direction in ns, as the median over stretches of a millisecond.
+//! - `entry dirty [NAME]`: checks which packets and slices are slowed down by dirty upper halves of the vector registers; fails if any
+//!   is.
+//! - `entry exceptions`: checks which calls on one lane raise floating-point exceptions; fails if any does.
+//! - `entry keep`: runs nothing, but keeps in the program the functions whose size `.ci/sizes.sh` reports.
 //!
-//! A name that ends in `*` selects all with that prefix. `run` prints the number of calls per pass.
+//! A name that ends in `*` selects all entry points with that prefix. `run` also prints the number of calls per pass.
 
 mod dirty;
 mod exceptions;
@@ -124,7 +125,7 @@ fn pass<T: Task>(task: &mut T, passes: u32) {
     }
 }
 
-/// Time of a direction, ns: median over stretches of at least a millisecond.
+/// Returns the time per direction in ns: the median over stretches of at least a millisecond.
 fn time<T: Task>(task: &mut T, seconds: f64) -> f64 {
     let mut stretch = |passes: u32| {
         let start = Instant::now();

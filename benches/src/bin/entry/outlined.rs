@@ -1,5 +1,5 @@
-//! The entry points that are inlined into their callers, each in a function of its own, so that it has a size: scalar
-//! code and the portable level. Those of other levels are functions by themselves.
+//! Entry points that are inlined into their callers: scalar code and the portable level. Each gets a function of its own here, so that
+//! its size can be measured. The entry points of the other levels are functions already.
 
 use core::hint::black_box;
 use glam::Vec3;
@@ -13,7 +13,7 @@ use hairis::{
 use hairis_benches::entries::is_compiled;
 use hairis_variants::{Cauchy, ModelId, Registered};
 
-/// Declares one function per entry point, and `of`, which lists them.
+/// Declares one function per entry point, and the function `of`, which takes their addresses.
 macro_rules! outlined {
     ($($name:ident($($arg:ident: $type:ty),*) -> $out:ty { $body:expr })*) => {
         $(

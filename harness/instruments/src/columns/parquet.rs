@@ -1,4 +1,5 @@
-//! The Parquet form: one row group, columns compressed by Snappy, text and the axes by dictionary.
+//! Parquet form of a table: one row group, with columns compressed by Snappy and the dictionary encoding that the crate uses by
+//! default.
 
 use super::{ColumnValues, Columns};
 use ::parquet::basic::Compression;
@@ -11,11 +12,11 @@ use std::io::{self, Write};
 use std::sync::Arc;
 
 impl Columns {
-    /// Writes it as Apache Parquet, with `notes` as its key-value metadata.
+    /// Writes the table as Apache Parquet, with `notes` as its key-value metadata.
     ///
     /// # Errors
     ///
-    /// Errors of `out`.
+    /// Returns the errors of `out`, and of the encoder if the names of the columns do not form a schema.
     pub fn write_parquet(
         &self,
         notes: Vec<(String, String)>,

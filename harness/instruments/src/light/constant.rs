@@ -1,4 +1,4 @@
-//! Constant radiance from every direction.
+//! Light of the same radiance from every direction.
 
 use super::{Light, LightSample, Seen8, rounded};
 use core::f64::consts::PI;
@@ -6,9 +6,9 @@ use glam::DVec3;
 use hairis::Vec3x8;
 use wide::f32x8;
 
-/// Radiance 1, sampled uniformly on the sphere.
+/// Constant light of radiance 1 from every direction, sampled uniformly on the sphere.
 ///
-/// - Integral: of the radiance, `4 pi`.
+/// - Integral: the radiance integrates to `4 pi` over the sphere.
 ///
 /// # Examples
 /// ```
@@ -20,7 +20,7 @@ use wide::f32x8;
 pub struct Constant;
 
 impl Constant {
-    /// Name of the light.
+    /// Name of the light, which [`Light::name`] returns for tables and files.
     pub const NAME: &'static str = "constant";
 }
 
@@ -43,7 +43,7 @@ impl Light for Constant {
 
     fn sample(&self, xi: [f64; 2]) -> LightSample {
         let y = 1.0 - 2.0 * xi[0];
-        // (1 - y)(1 + y) by its factors: no cancellation near the poles.
+        // (1 - y)(1 + y) is computed from its factors, so that nothing cancels near the poles.
         let r = (4.0 * xi[0] * (1.0 - xi[0])).max(0.0).sqrt();
         let (sin_phi, cos_phi) = (2.0 * PI * xi[1]).sin_cos();
         LightSample {

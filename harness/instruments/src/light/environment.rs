@@ -1,4 +1,4 @@
-//! Latitude-longitude environment maps with exact importance sampling.
+//! Latitude-longitude environment maps with importance sampling that follows the map exactly.
 
 mod inversion;
 mod places;
@@ -16,30 +16,32 @@ use places::{Places, in_doubt};
 use serde::Serialize;
 use wide::f32x8;
 
-/// The radiance that replaces an infinite pixel: the largest half float of `OpenEXR`.
+/// Radiance that replaces an infinite pixel: the largest half float of `OpenEXR`.
 pub(super) const INFINITE_PIXEL: f32 = 65_504.0;
 
-/// Samples are at least this far, in shares of a texel, from its edges where it is not looked up once more.
+/// Distance from the edges of a texel, as a share of the texel, below which a sample's texel is looked up once more.
 const EDGE: f64 = 1e-6;
 
-/// Repaired channels of an environment, by kind of repair.
+/// Counts of repaired channels of an environment, by kind of repair.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct PixelRepairs {
-    /// NaN channels, set to 0.
+    /// Number of NaN channels, which were set to 0.
     pub nan: usize,
-    /// Negative channels (negative infinity among them), set to 0.
+    /// Number of negative channels (negative infinity among them), which were set to 0.
     pub negative: usize,
-    /// Positive infinite channels, set to 65504.
+    /// Number of positive infinite channels, which were set to 65504.
     pub infinite: usize,
 }
 
-/// A latitude-longitude environment map of piecewise constant radiance.
+/// Latitude-longitude environment map whose radiance is constant on each texel.
 ///
-/// Row 0 is at the zenith (+y), the last row at the nadir. The middle column looks along -z, and +x is a quarter of the width to its right.
+/// The first row is at the zenith (+y), the last row at the nadir. The middle column faces -z, and +x lies a quarter of the width to
+/// its right.
 ///
-/// A texel is drawn with probability proportional to its luminance times its exact solid angle (the sine weighting, integrated), by a marginal cdf of rows
-/// and a conditional cdf of columns; the direction is uniform in solid angle within the texel. So the density is constant on each texel and its integral is
-/// exactly the texel's probability. A black map is sampled uniformly over the sphere.
+/// A texel is drawn with probability proportional to its luminance times its exact solid angle (the sine weighting, integrated), by a
+/// marginal cdf of rows and a conditional cdf of columns. Within the texel the direction is uniform in solid angle. The density is
+/// therefore constant on each texel, and its integral is exactly the texel's probability. A black map is sampled uniformly over the
+/// sphere.
 ///
 /// # Examples
 /// ```
@@ -54,26 +56,26 @@ pub struct Environment {
     name: String,
     width: usize,
     height: usize,
-    /// Radiance of each texel, and the density of drawing a direction of it: what a look-up reads.
+    /// Radiance of each texel and the density of drawing a direction in it, side by side as a look-up reads them.
     texels: Vec<[f32; 4]>,
     /// Cosine of the polar angle at the upper edge of each row, and at the bottom: 1 down to -1.
     edges: Vec<f64>,
-    /// Cumulative weights over rows, and within each row over its columns; both start after the first element.
+    /// Cumulative weights over rows, and within each row over its columns; both begin with the first element's weight, not with 0.
     rows: Vec<f64>,
     columns: Vec<f64>,
-    /// Starting points of the searches in them: see [`guide`](inversion::guide).
+    /// Starting points of the searches in the cumulative weights: see [`guide`](inversion::guide).
     row_guide: Vec<u32>,
     column_guide: Vec<u32>,
     repairs: PixelRepairs,
-    /// Remarks of a reader on how it changed the values of a file.
+    /// Remarks of the reader on how it changed the values of a file.
     remarks: Vec<String>,
 }
 
 impl Environment {
-    /// A map from linear RGB pixels, row by row from the zenith. Channels that are no radiances are repaired and counted.
+    /// Makes a map from linear RGB pixels, row by row from the zenith. Channels that are not valid radiances are repaired and counted.
     ///
     /// # Errors
-    /// A message when a side is 0 or `pixels` does not hold `width * height` of them.
+    /// Returns a message if a side is 0 or `pixels` does not hold `width * height` elements.
     pub fn from_pixels(
         name: impl Into<String>,
         width: usize,
@@ -144,25 +146,25 @@ impl Environment {
         Ok(map)
     }
 
-    /// Adds remarks of a reader to the [`notes`](Self::notes).
+    /// Sets the remarks of a reader, which [`notes`](Self::notes) returns first.
     pub(super) fn with_remarks(self, remarks: Vec<String>) -> Self {
         Self { remarks, ..self }
     }
 
-    /// Width and height in texels.
+    /// Returns the width and the height of the map in texels.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
         [self.width, self.height]
     }
 
-    /// The channels that had to be repaired.
+    /// Returns the counts of channels that had to be repaired.
     #[must_use]
     pub fn repairs(&self) -> PixelRepairs {
         self.repairs
     }
 
-    /// Remarks on the map for reports, one line each: conversions of a file, a shape other than 2:1, repaired channels, no
-    /// light at all.
+    /// Returns remarks on the map for reports, one line each: conversions of the file, a shape other than 2:1, repaired channels, and a
+    /// map that is black.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let remark = |remark| format!("{}: {remark}", self.name);
@@ -187,13 +189,13 @@ impl Environment {
         notes
     }
 
-    /// Whether the map gives no light at all.
+    /// Returns true if the map emits no light at all.
     #[must_use]
     pub fn is_black(&self) -> bool {
         self.total() == 0.0
     }
 
-    /// Digest of the map: a hash of the size and of every pixel, not of the name.
+    /// Returns a hash of the size and of every pixel of the map, but not of its name.
     #[must_use]
     pub fn digest(&self) -> u64 {
         let start = mix(mix(self.width as u64) ^ self.height as u64);
@@ -209,21 +211,21 @@ impl Environment {
         self.rows[self.height - 1]
     }
 
-    /// Place of the texel that covers `dir`.
+    /// Returns the index of the texel that covers `dir`.
     fn texel(&self, dir: DVec3) -> usize {
         let polar = dir.x.hypot(dir.z).atan2(dir.y) / PI;
         let turn = 0.5 + dir.x.atan2(-dir.z) / (2.0 * PI);
         cell(polar, self.height) * self.width + cell(turn, self.width)
     }
 
-    /// The direction at fraction `turn` of the width and polar cosine `cosine`.
+    /// Returns the direction at fraction `turn` of the width and polar cosine `cosine`.
     fn direction(turn: f64, cosine: f64) -> DVec3 {
         let r = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
         let (sin, cos) = (2.0 * PI * (turn - 0.5)).sin_cos();
         DVec3::new(r * sin, cosine, -r * cos)
     }
 
-    /// Density of drawing a direction of a texel with this radiance.
+    /// Returns the density of drawing a direction in a texel with this radiance.
     fn density(&self, radiance: [f64; 3]) -> f64 {
         let total = self.total();
         if total == 0.0 {
@@ -234,14 +236,14 @@ impl Environment {
     }
 }
 
-/// The radiance of a texel.
+/// Returns the radiance of a texel in double precision.
 fn colour([r, g, b, _]: [f32; 4]) -> [f64; 3] {
     [r, g, b].map(f64::from)
 }
 
 impl Environment {
-    /// Directions from pairs of numbers. The tables of a large map are in no cache: reads of one kind are side by side, so that
-    /// they wait together.
+    /// Draws directions from pairs of numbers. The tables of a large map are in no cache, so reads of one kind are made side by side
+    /// and wait together.
     fn draw<const N: usize>(&self, xi: [[f64; 2]; N]) -> [LightSample; N] {
         if self.is_black() {
             let dir = |[a, b]: [f64; 2]| Self::direction(b, 1.0 - 2.0 * a);
@@ -274,7 +276,8 @@ impl Environment {
             let ((j, down), (i, across)) = (rows[k], columns[k]);
             let cosine = self.edges[j] + down * (self.edges[j + 1] - self.edges[j]);
             let dir = Self::direction((i as f64 + across) / self.width as f64, cosine);
-            // On an edge between texels rounding may land in the next one, and value and density must be of one texel.
+            // Near an edge between texels, rounding may move the direction into the next texel, but value and density must belong to
+            // one texel.
             let inside = |x: f64| (EDGE..1.0 - EDGE).contains(&x);
             let texel = if inside(down) && inside(across) {
                 drawn[k]
@@ -310,7 +313,7 @@ impl Light for Environment {
         self.draw(xi)
     }
 
-    /// To the bit what [`radiance`](Light::radiance) and [`pdf`](Light::pdf) give in double precision, rounded.
+    /// Returns [`radiance`](Light::radiance) and [`pdf`](Light::pdf) bit for bit as double precision gives them, rounded.
     fn see8(&self, dir: &Vec3x8) -> Seen8 {
         let [row, column] = Level::detect().run(Places {
             dir,
@@ -326,7 +329,7 @@ impl Light for Environment {
             let texel = if doubt >> lane & 1 == 1 {
                 self.texel(dir.lane(lane).as_dvec3())
             } else {
-                // Above 0 and below the size: in doubt otherwise.
+                // The places are above 0 and below the size, because all others are in doubt.
                 rows[lane].unsigned_abs() as usize * self.width
                     + columns[lane].unsigned_abs() as usize
             };
@@ -341,8 +344,9 @@ impl Light for Environment {
         }
     }
 
-    /// Gauss-Legendre in each texel, 4 by 4 nodes and 3 by 3 for the error; texels of no light are skipped. Exact edges, but lobes of `f` much narrower than
-    /// a texel are not resolved: `converged` compares the error with the tolerance.
+    /// Integrates by Gauss-Legendre rules in each texel, with 4 by 4 nodes for the value and 3 by 3 for the error; black texels are
+    /// skipped. Edges of texels are exact, but lobes of `f` much narrower than a texel are not resolved: `converged` compares the error
+    /// with the tolerance.
     fn integrate(&self, f: &dyn Fn(DVec3) -> [f64; 3], sphere: &SphereIntegrator) -> Integral<3> {
         let rules = [GaussLegendre::new(4), GaussLegendre::new(3)];
         let (mut value, mut error) = ([0.0; 3], [0.0; 3]);

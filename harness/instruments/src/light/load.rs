@@ -1,4 +1,4 @@
-//! Environment maps from files.
+//! Environment maps from Radiance HDR and `OpenEXR` files.
 
 mod openexr;
 mod primaries;
@@ -12,10 +12,10 @@ use std::fs::File;
 use std::io::{self, BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
 
-/// Texels beyond which a map is refused, 8192 x 4096: its tables would take a gigabyte.
+/// Largest number of texels of a map, 8192 x 4096; the tables of a map beyond would take a gigabyte.
 const MAX_TEXELS: usize = 1 << 25;
 
-/// Refusal of an environment map: the file and the reason.
+/// Error of an environment map that cannot be used: the file and the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LightError {
     path: PathBuf,
@@ -23,7 +23,7 @@ pub struct LightError {
 }
 
 impl LightError {
-    /// Refusal of a map that gives no light, so that no figure can be relative to it.
+    /// Returns the error of a map that emits no light, because no figure can be relative to such a map.
     #[must_use]
     pub fn black(path: &Path, PixelRepairs { nan, negative, .. }: PixelRepairs) -> Self {
         let repairs = match nan + negative {
@@ -46,23 +46,24 @@ impl fmt::Display for LightError {
 impl core::error::Error for LightError {}
 
 impl Environment {
-    /// [`load_layer`](Self::load_layer) without the name of a layer.
+    /// Reads an environment map as [`load_layer`](Self::load_layer) does, without naming a layer.
     ///
     /// # Errors
-    /// [`LightError`], one line that names the file and the reason.
+    /// Returns [`LightError`], which names the file and the reason in one line.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, LightError> {
         Self::load_layer(path, None)
     }
 
-    /// Reads a latitude-longitude map, Radiance HDR or `OpenEXR` by content, whatever the file is called.
+    /// Reads a latitude-longitude map from a Radiance HDR or `OpenEXR` file. The format is detected from the content, whatever the file
+    /// is called.
     ///
-    /// The map is linear RGB with the Rec. 709 primaries. Files with other primaries and XYZ files are converted with
-    /// their tristimulus values kept: whites are not adapted. Radiance values are divided by `EXPOSURE` and `COLORCORR`.
-    /// An `OpenEXR` map covers the display window and is black outside the data window; alpha is ignored. `layer` names
-    /// the layer to read where the file has several with colour. [`notes`](Self::notes) reports every conversion.
+    /// The map is linear RGB with the Rec. 709 primaries. Files with other primaries and XYZ files are converted so that tristimulus
+    /// values are kept: whites are not adapted. Radiance values are divided by `EXPOSURE` and `COLORCORR`. An `OpenEXR` map covers the
+    /// display window and is black outside the data window; alpha is ignored. `layer` names the layer to read if several layers of the
+    /// file have colour. [`notes`](Self::notes) reports every conversion.
     ///
     /// # Errors
-    /// [`LightError`], one line that names the file and the reason.
+    /// Returns [`LightError`], which names the file and the reason in one line.
     pub fn load_layer(path: impl AsRef<Path>, layer: Option<&str>) -> Result<Self, LightError> {
         let path = path.as_ref();
         let name = path.file_name().map_or_else(
@@ -81,7 +82,7 @@ impl Environment {
     }
 }
 
-/// The content of a file: linear Rec. 709 pixels, row by row from the zenith.
+/// Content of a file: linear Rec. 709 pixels, row by row from the zenith.
 struct Map {
     size: [usize; 2],
     pixels: Vec<[f32; 3]>,
@@ -90,8 +91,8 @@ struct Map {
 }
 
 impl Map {
-    /// Replaces pixels by their products with a matrix. Infinite channels count as the largest half float first, because
-    /// a sum with both signs of infinity is NaN.
+    /// Multiplies every pixel by a matrix. Infinite channels are first set to the largest half float, because a sum with both signs of
+    /// infinity is NaN.
     fn convert(&mut self, matrix: &DMat3) {
         let mut infinite = 0;
         for pixel in &mut self.pixels {
@@ -113,7 +114,7 @@ impl Map {
     }
 }
 
-/// The map of a file, or the reason to refuse it.
+/// Reads the map of a file, or returns the reason why the file is rejected.
 fn read_map(path: &Path, layer: Option<&str>) -> Result<Map, String> {
     let unreadable = |e: io::Error| format!("cannot read: {}", line(&e));
     if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
@@ -142,7 +143,7 @@ fn read_map(path: &Path, layer: Option<&str>) -> Result<Map, String> {
     radiance::read(file)
 }
 
-/// The size of a map that is neither empty nor too large.
+/// Returns the size of a map if the map is neither empty nor too large.
 fn checked([width, height]: [usize; 2]) -> Result<[usize; 2], String> {
     if width == 0 || height == 0 {
         return Err(format!("the image has no pixels: {width} x {height}"));
@@ -157,7 +158,7 @@ fn damaged(e: impl fmt::Display) -> String {
     format!("damaged or cut short: {}", line(&e))
 }
 
-/// A foreign error's message on one line.
+/// Returns the message of a foreign error on one line.
 fn line(e: &dyn fmt::Display) -> String {
     e.to_string()
         .split_whitespace()
@@ -165,7 +166,7 @@ fn line(e: &dyn fmt::Display) -> String {
         .join(" ")
 }
 
-/// The start of a text out of a file, for a message.
+/// Returns the start of a text from a file, for use in a message.
 fn excerpt(text: &str) -> String {
     let text = line(&text);
     let mut start: String = text.chars().take(60).collect();

@@ -1,4 +1,4 @@
-//! A clear sky, the environment that needs no file.
+//! Clear sky, an environment that needs no file.
 
 use super::{Environment, luminance, rounded};
 use core::array::from_fn;
@@ -14,10 +14,10 @@ const GROUND: f64 = 0.2;
 /// Turbidity of a clear day.
 const TURBIDITY: f64 = 3.0;
 
-/// Height of the sun above the horizon, and its azimuth to the right of -z, in degrees.
+/// Elevation of the sun above the horizon and its azimuth to the right of -z, in degrees.
 const SUN_DEG: [f64; 2] = [40.0, 35.0];
 
-/// Perez coefficients of Y, x, y: each of the five is `slope * turbidity + offset`.
+/// Perez coefficients of Y, x and y, five each: every coefficient is `slope * turbidity + offset`.
 const PEREZ: [[[f64; 2]; 5]; 3] = [
     [
         [0.1787, -1.4630],
@@ -42,7 +42,8 @@ const PEREZ: [[[f64; 2]; 5]; 3] = [
     ],
 ];
 
-/// Zenith chromaticity x and y: rows for the turbidity squared, to the first power and constant; columns for the sun's angle cubed down to constant.
+/// Coefficients of the zenith chromaticities x and y. Rows belong to the turbidity squared, to the first power and constant; columns to
+/// the sun's angle, cubed down to constant.
 const ZENITH: [[[f64; 4]; 3]; 2] = [
     [
         [0.00166, -0.00375, 0.00209, 0.0],
@@ -56,15 +57,18 @@ const ZENITH: [[[f64; 4]; 3]; 2] = [
     ],
 ];
 
-/// A clear sky with its sun and a grey ground.
+/// Clear sky with a sun, above a grey ground.
 ///
-/// The sky is the analytic daylight of Preetham, with Perez' distribution and the zenith luminance and chromaticity of its appendix. The sun's illuminance
-/// is that above the atmosphere, 133.8 klx, dimmed by Rayleigh and aerosol extinction at 610, 550 and 465 nm; its disc is narrower than a texel, so it is
-/// blurred to a bell of deviation 0.6 degrees that holds the same illuminance. Below the horizon lies a Lambertian ground of reflectance 0.2 under both.
+/// The sky is the analytic daylight of Preetham, with Perez' distribution and the zenith luminance and chromaticity of its appendix.
+/// The illuminance of the sun above the atmosphere is 133.8 klx. Rayleigh and aerosol extinction dim the sun, computed at 610, 550 and
+/// 465 nm. The disc of the sun is narrower than a texel, so it is blurred to a bell of deviation 0.6 degrees that holds the same
+/// illuminance. Below the horizon lies a Lambertian ground of reflectance 0.2, which is lit by the sky and the sun.
 ///
-/// - Source: Preetham, Shirley and Smits 1999, A practical analytic model for daylight, sections 3 and appendix; the relative optical mass is Kasten's.
+/// - Source: Preetham, Shirley and Smits 1999, A practical analytic model for daylight, section 3 and appendix; the relative optical
+///   mass is Kasten's.
 /// - Units: radiance is linear RGB whose luminance is in kcd/m^2 (the spectral shape is reduced to three channels, a simplification).
-/// - Accuracy: known to be too bright about a sun near the horizon; meant as a plausible light, not as a measurement.
+/// - Accuracy: the model is known to be too bright around a sun near the horizon; it is meant as a plausible light, not as a
+///   measurement.
 ///
 /// # Examples
 /// ```
@@ -79,7 +83,7 @@ pub struct Sky {
 }
 
 impl Default for Sky {
-    /// A clear day, turbidity 3, the sun 40 degrees high and 35 degrees to the right of -z.
+    /// Returns the sky of a clear day with turbidity 3. The sun is 40 degrees high and 35 degrees to the right of -z.
     fn default() -> Self {
         let [elevation, azimuth] = SUN_DEG.map(f64::to_radians);
         let [(sin_e, cos_e), (sin_a, cos_a)] = [elevation, azimuth].map(f64::sin_cos);
@@ -91,15 +95,16 @@ impl Default for Sky {
 }
 
 impl Sky {
-    /// Name of the environment.
+    /// Name of the environment in tables and files.
     pub const NAME: &'static str = "clear sky";
 
-    /// Its name in a sentence.
+    /// Name of the environment as it reads in a sentence.
     pub const WORDS: &'static str = "a procedural sky";
 
-    /// Radiance of the sky without its sun at `dir` above the horizon, linear RGB in kcd/m^2; negative channels of colours outside the gamut are 0.
+    /// Returns the radiance of the sky without its sun at `dir` above the horizon, linear RGB in kcd/m^2. Colours outside the gamut
+    /// have their negative channels set to 0.
     fn sky_radiance(&self, dir: DVec3) -> [f64; 3] {
-        // The fit diverges at the horizon itself: hold it from half a degree up.
+        // The fit diverges at the horizon, so its value half a degree above the horizon is used below that angle.
         let cos_theta = dir.y.max(0.01);
         let cos_gamma = dir.dot(self.sun).clamp(-1.0, 1.0);
         let [luminance, x, y] = from_fn(|k| {
@@ -113,7 +118,7 @@ impl Sky {
         xyy_to_rgb(x, y, luminance.max(0.0))
     }
 
-    /// Zenith luminance in kcd/m^2 (0) or chromaticity x (1), y (2).
+    /// Returns the zenith luminance in kcd/m^2 for `k` 0, and the chromaticities x and y for 1 and 2.
     fn zenith(&self, k: usize) -> f64 {
         let (t, s) = (TURBIDITY, self.sun_polar);
         if k == 0 {
@@ -125,7 +130,7 @@ impl Sky {
         (square * t + first) * t + constant
     }
 
-    /// Illuminance of the sun on a plane that faces it, linear RGB in klx.
+    /// Returns the illuminance of the sun on a plane that faces the sun, linear RGB in klx.
     fn sun_irradiance(&self) -> [f64; 3] {
         let degrees = self.sun_polar.to_degrees();
         let mass = 1.0 / (self.sun_polar.cos() + 0.15 * (93.885 - degrees).powf(-1.253));
@@ -136,11 +141,11 @@ impl Sky {
         })
     }
 
-    /// The map of 512 by 256 texels; the same bits each time on one machine.
+    /// Renders the sky as a map of 512 by 256 texels, whose bits are the same each time on one machine.
     ///
     /// # Panics
     ///
-    /// Never: there is a pixel for each texel.
+    /// Never, because there is a pixel for each texel.
     #[must_use]
     pub fn environment(&self) -> Environment {
         let [width, height] = SIZE;
@@ -181,8 +186,8 @@ impl Sky {
     }
 }
 
-/// Linear RGB with the Rec. 709 primaries and the D65 white of a colour of chromaticity (x, y) and luminance `big_y`; negative channels become 0, and the
-/// others are scaled so that the luminance stays.
+/// Converts a colour of chromaticity (x, y) and luminance `big_y` to linear RGB with the Rec. 709 primaries and the D65 white. Negative
+/// channels become 0, and the others are scaled so that the luminance stays.
 fn xyy_to_rgb(x: f64, y: f64, big_y: f64) -> [f64; 3] {
     let (cap_x, cap_z) = (x / y * big_y, (1.0 - x - y) / y * big_y);
     let rgb = [

@@ -1,4 +1,4 @@
-//! A smooth, strictly positive light of order one.
+//! Smooth, strictly positive light whose radiance is of order one.
 
 use super::{Light, LightSample, Seen8, about, luminance, rounded, unit_or_up};
 use core::f64::consts::PI;
@@ -6,13 +6,13 @@ use glam::DVec3;
 use hairis::Vec3x8;
 use wide::f32x8;
 
-/// Axis of the gradient: above, ahead and to the side, so that no symmetry of the fibre hides an error. Unit.
+/// Axis of the gradient, a unit vector. It points upwards, ahead and to the side, so that no symmetry of the fibre hides an error.
 const AXIS: DVec3 = DVec3::new(0.36, 0.80, 0.48);
 
 /// Mean radiance of each channel.
 const MEAN: [f64; 3] = [1.0, 0.9, 0.8];
 
-/// Contrast of each channel: the radiance runs over `MEAN (1 -+ CONTRAST)`.
+/// Contrast of each channel: the radiance ranges over `MEAN (1 -+ CONTRAST)`.
 const CONTRAST: [f64; 3] = [0.5, 0.6, 0.8];
 
 /// Contrast of the luminance.
@@ -22,11 +22,12 @@ const SLOPE: f64 = luminance([
     MEAN[2] * CONTRAST[2],
 ]) / luminance(MEAN);
 
-/// A linear gradient over the sphere: `mean (1 + contrast dot(axis, dir))` in each channel, its luminance sampled exactly.
+/// Linear gradient over the sphere, `mean (1 + contrast dot(axis, dir))` in each channel, whose luminance is sampled exactly.
 ///
-/// The axis is (0.36, 0.80, 0.48), the means are 1, 0.9, 0.8 and the contrasts 0.5, 0.6, 0.8 for red, green, blue: always above 0.16.
+/// The axis is (0.36, 0.80, 0.48). For red, green and blue the means are 1, 0.9, 0.8 and the contrasts 0.5, 0.6, 0.8. The radiance is
+/// therefore never below 0.16.
 ///
-/// - Integral: of the radiance, `4 pi mean`.
+/// - Integral: the radiance integrates to `4 pi mean` over the sphere.
 ///
 /// # Examples
 /// ```
@@ -39,7 +40,7 @@ const SLOPE: f64 = luminance([
 pub struct Smooth;
 
 impl Smooth {
-    /// Name of the light.
+    /// Name of the light, which [`Light::name`] returns for tables and files.
     pub const NAME: &'static str = "smooth";
 }
 
@@ -65,7 +66,7 @@ impl Light for Smooth {
     }
 
     fn sample(&self, xi: [f64; 2]) -> LightSample {
-        // The cdf of t is ((t + 1) + slope (t^2 - 1)/2)/2; its root by the form that does not cancel.
+        // The cdf of t is ((t + 1) + slope (t^2 - 1)/2)/2; its root is computed in the form that does not cancel.
         let k = SLOPE;
         let c = 2.0 * xi[0] - 1.0 + 0.5 * k;
         let t = (2.0 * c / (1.0 + (1.0 + 2.0 * k * c).max(0.0).sqrt())).clamp(-1.0, 1.0);

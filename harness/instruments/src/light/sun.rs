@@ -1,4 +1,4 @@
-//! A disc of constant radiance: a sun, five degrees wide by default.
+//! Sun: a disc of constant radiance, five degrees wide.
 
 use super::{Light, LightSample, Seen8, about, rounded, unit_or_up};
 use crate::quadrature::{Integral, SphereIntegrator, integrate_rectangle};
@@ -7,10 +7,10 @@ use glam::DVec3;
 use hairis::Vec3x8;
 use wide::f32x8;
 
-/// A disc on the sky, 5 degrees across, sampled uniformly over its cone. Its radiance is `1 / solid_angle`, white: an irradiance of
-/// 1 on a plane facing each of its points.
+/// Disc on the sky, 5 degrees across, which is sampled uniformly over its cone. Its radiance is `1 / solid_angle` and white, which is
+/// an irradiance of 1 on a plane that faces each of its points.
 ///
-/// - Integral: of the radiance, 1.
+/// - Integral: the radiance integrates to 1.
 ///
 /// # Examples
 /// ```
@@ -23,15 +23,15 @@ use wide::f32x8;
 #[derive(Clone, Copy, Debug)]
 pub struct Sun {
     axis: DVec3,
-    /// 1 - cos of the angular radius, through the half angle: no cancellation for small discs.
+    /// 1 - cos of the angular radius, computed from the half angle so that nothing cancels for small discs.
     height: f64,
 }
 
 impl Sun {
-    /// Name of the light.
+    /// Name of the light, which [`Light::name`] returns for tables and files.
     pub const NAME: &'static str = "sun";
 
-    /// The disc around `towards` (of any length; straight up when it has no direction).
+    /// Makes the disc around the direction `towards`, which may have any length; the disc is straight up if `towards` has no direction.
     #[must_use]
     pub fn five_degrees(towards: DVec3) -> Self {
         let half_sin = (0.25 * 5.0_f64.to_radians()).sin();
@@ -41,13 +41,13 @@ impl Sun {
         }
     }
 
-    /// Solid angle of the disc, in sr.
+    /// Returns the solid angle of the disc, in sr.
     #[must_use]
     pub fn solid_angle(&self) -> f64 {
         2.0 * PI * self.height
     }
 
-    /// The direction at `1 - cos = fall` and azimuth `phi` about the axis.
+    /// Returns the direction at `1 - cos = fall` and azimuth `phi` about the axis.
     fn direction(&self, fall: f64, phi: f64) -> DVec3 {
         about(self.axis, 1.0 - fall, fall * (2.0 - fall), phi)
     }
@@ -64,7 +64,7 @@ impl Light for Sun {
 
     fn see(&self, dir: DVec3) -> ([f64; 3], f64) {
         // The chord is accurate where the cosine is not: |dir - axis|^2 = 2 (1 - cos). A relative slack of 1e-9 on the radius keeps
-        // rounded rim samples inside; it moves the mass by as little.
+        // rounded samples on the rim inside, and moves the mass by as little.
         let chord_sq = (unit_or_up(dir) - self.axis).length_squared();
         let is_inside = chord_sq <= 2.0 * self.height * (1.0 + 2e-9);
         let pdf = f64::from(is_inside) / self.solid_angle();
@@ -93,7 +93,7 @@ impl Light for Sun {
     }
 
     fn integrate(&self, f: &dyn Fn(DVec3) -> [f64; 3], sphere: &SphereIntegrator) -> Integral<3> {
-        // Square root of the fall is the radius to first order: polar coordinates without the kink at the centre.
+        // The square root of the fall is the radius to first order: polar coordinates without the kink at the centre.
         let rim = self.height.sqrt();
         let radiance = 1.0 / self.solid_angle();
         integrate_rectangle(

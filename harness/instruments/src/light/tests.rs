@@ -1,4 +1,4 @@
-//! Every light against its own density, and environment maps against files.
+//! Tests of every light against its own density, and of environment maps against files.
 
 mod environment;
 mod files;
@@ -12,7 +12,8 @@ use crate::stats::{Moments, sidak};
 use core::f64::consts::PI;
 use hairis_conformance::statistics::chi_square;
 
-/// A map of 16 x 8 with a black row, a black column and a range of 1 to 500, so that every branch of the sampling is taken.
+/// Returns a map of 16 x 8 texels with a black row, a black column and values from 1 to 500, so that every branch of the sampling is
+/// taken.
 fn small_map() -> Environment {
     let mut xi = Independent::new(77, 0);
     let pixels = (0..128)
@@ -41,7 +42,7 @@ fn lights() -> Vec<Box<dyn Light>> {
     ]
 }
 
-/// Integral of the radiance of a map: the sum over texels of radiance times solid angle.
+/// Returns the integral of the radiance of a map: the sum over texels of radiance times solid angle.
 fn total_radiance(map: &Environment) -> [f64; 3] {
     let [width, height] = map.size();
     let mut sum = [0.0; 3];
@@ -69,7 +70,7 @@ fn tight() -> SphereIntegrator {
 #[test]
 fn densities_integrate_to_one_over_their_support() {
     for light in lights() {
-        // The reference integral runs over radiance times f: with f = pdf / radiance it is the mass where the light shines.
+        // The reference integral is that of radiance times f: with f = pdf / radiance it is the mass where the light shines.
         let f = |dir: DVec3| {
             light
                 .radiance(dir)
@@ -87,7 +88,8 @@ fn densities_integrate_to_one_over_their_support() {
 
 #[test]
 fn densities_integrate_to_one_over_the_sphere() {
-    // A plain midpoint sum, blind to what each light believes of itself. Its error is that of counting cells on the rims: the sun has about 4800 cells.
+    // A plain midpoint sum that uses nothing of what a light states about itself. Its error comes from counting cells on the rims: the
+    // sun has about 4800 cells.
     let (rows, columns) = (1_000, 2_000);
     for light in lights() {
         let mut mass = 0.0;
@@ -110,7 +112,7 @@ fn eight_lanes_see_what_one_sees() {
     for light in lights() {
         let (mut far, mut lit) = (0, 0);
         for k in 0..2_500 {
-            // Half of the directions are the light's own, so that small ones are met.
+            // Half of the directions are drawn from the light, so that small lights are hit.
             let dirs: [DVec3; 8] = core::array::from_fn(|lane| {
                 if lane % 2 == 0 {
                     light.sample(xi.next_xi()).dir
@@ -125,7 +127,7 @@ fn eight_lanes_see_what_one_sees() {
                 let close = |a: f64, b: f64| (a - b).abs() <= 2e-5 * b.abs();
                 let same = close(f64::from(seen.pdf.as_array()[lane]), pdf)
                     && got.iter().zip(radiance).all(|(a, b)| close(*a, b));
-                // Edges may be rounded across.
+                // Rounding may carry a direction across an edge.
                 far += i32::from(!same);
                 lit += i32::from(radiance[0] > 0.0);
                 assert!(
@@ -214,7 +216,7 @@ fn samples_agree_with_radiance_and_density() {
 
 #[test]
 fn estimates_equal_the_quadrature_of_radiance() {
-    // Against f = 1 and against a tilted f, so that a density right in total but wrong in place is seen.
+    // Against f = 1 and against a tilted f, so that a density that is right in total but wrong in place is detected.
     let fs: [fn(DVec3) -> [f64; 3]; 2] = [
         |_| [1.0; 3],
         |d| [1.0 + 0.9 * d.x, (d.z - 0.2).powi(2), (2.0 * d.y).exp()],
@@ -272,7 +274,7 @@ fn reference_integrals_have_closed_forms() {
     }
 }
 
-/// Cells of a chi-square test, drawn by `cell` from each sample, against `mass` of each cell.
+/// Returns the p-value of a chi-square test of samples, each of which `cell` sorts into a cell, against the `mass` of each cell.
 fn fit(light: &dyn Light, stream: u64, mass: &[f64], cell: impl Fn(DVec3) -> usize) -> f64 {
     let n = 1_000_000;
     let mut counts = vec![0_u64; mass.len()];
@@ -346,7 +348,7 @@ fn samples_follow_their_density() {
         bin(0.5 + 0.25 * d.x / d.y, n) * n + bin(0.5 + d.z / d.y, n)
     });
     assert!(p > level, "{}: {p}", light.name());
-    // The map: four cells a texel, so that the spread within a texel is tested too.
+    // The map: four cells per texel, so that the spread within a texel is tested too.
     let map = small_map();
     let (w, h) = (32, 16);
     let polar = |j: usize| (PI * j as f64 / h as f64).cos();

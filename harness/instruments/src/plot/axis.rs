@@ -1,19 +1,19 @@
-//! Axes: which values they span, where they put them, and how they label them.
+//! Axes, which determine the values that they span, where values lie, and their labels.
 
 use crate::table::number;
 
-/// How values are spread along an axis.
+/// Scale by which values are spread along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Scale {
-    /// Equal steps.
+    /// Equal steps of the value.
     Linear,
-    /// Equal ratios; values of 0 and below have no place on it and are left out.
+    /// Equal ratios; values of 0 and below have no place on the axis and are left out.
     Log,
     /// Equal steps of the sine of an angle in degrees.
     Sine,
 }
 
-/// One axis of a chart.
+/// Axis of a chart: its label, its scale, and optionally its range and step.
 ///
 /// ```
 /// use hairis_instruments::plot::Axis;
@@ -31,7 +31,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// A linear axis. Put the unit in the label. It spans 0 unless the values are close together and far from it.
+    /// Makes a linear axis, whose label should contain the unit. The axis includes 0 unless the values are close together and far from
+    /// 0.
     pub fn linear(label: impl Into<String>) -> Self {
         Self {
             label: label.into(),
@@ -41,7 +42,7 @@ impl Axis {
         }
     }
 
-    /// A logarithmic axis. Put the unit in the label.
+    /// Makes a logarithmic axis, whose label should contain the unit.
     pub fn log(label: impl Into<String>) -> Self {
         Self {
             scale: Scale::Log,
@@ -49,7 +50,7 @@ impl Axis {
         }
     }
 
-    /// An axis of angles in degrees, spread by their sine.
+    /// Makes an axis of angles in degrees, spread by their sine.
     pub(super) fn sine(label: impl Into<String>) -> Self {
         Self {
             scale: Scale::Sine,
@@ -57,7 +58,7 @@ impl Axis {
         }
     }
 
-    /// The values to span, in place of those of the data; what lies outside is cut off.
+    /// Sets the values that the axis spans, in place of the range of the data; values outside are cut off.
     pub fn range(self, low: f64, high: f64) -> Self {
         Self {
             range: Some((low, high)),
@@ -65,7 +66,7 @@ impl Axis {
         }
     }
 
-    /// The distance between labels of a linear axis.
+    /// Sets the distance between the labels of a linear axis.
     pub fn step(self, step: f64) -> Self {
         Self {
             step: Some(step),
@@ -73,7 +74,7 @@ impl Axis {
         }
     }
 
-    /// The axis with a range if it has none yet.
+    /// Sets the range of the axis, unless the axis has one already.
     pub(super) fn or_range(self, low: f64, high: f64) -> Self {
         Self {
             range: self.range.or(Some((low, high))),
@@ -81,12 +82,12 @@ impl Axis {
         }
     }
 
-    /// Whether `value` has a place on the axis.
+    /// Returns true if `value` has a place on the axis.
     pub(super) fn shows(&self, value: f64) -> bool {
         value.is_finite() && (self.scale != Scale::Log || value > 0.0)
     }
 
-    /// `value` in units that have equal lengths on the axis.
+    /// Converts `value` to units that have equal lengths on the axis.
     fn scaled(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => value,
@@ -95,7 +96,7 @@ impl Axis {
         }
     }
 
-    /// The axis laid along the pixels from `start` to `end`, wide enough for `values`.
+    /// Lays the axis along the pixels from `start` to `end`, wide enough for `values`.
     pub(super) fn fit(self, values: &[f64], start: f64, end: f64) -> Fitted {
         let (low, high) = self.ends(values);
         Fitted {
@@ -107,14 +108,14 @@ impl Axis {
         }
     }
 
-    /// The ends of an axis wide enough for `values`, in scaled units.
+    /// Returns the ends of an axis wide enough for `values`, in scaled units.
     fn ends(&self, values: &[f64]) -> (f64, f64) {
         let usable = |(low, high): &(f64, f64)| self.shows(*low) && self.shows(*high) && low < high;
         if let Some((low, high)) = self.range.filter(usable) {
             return (self.scaled(low), self.scaled(high));
         }
         let is_log = self.scale == Scale::Log;
-        // The difference of the ends must stay finite, and for a logarithmic axis their ratio.
+        // The difference of the ends must stay finite, and on a logarithmic axis so must their ratio.
         let most = if is_log { 140.0 } else { 1e300 };
         let mut ends: Option<(f64, f64)> = None;
         for value in values.iter().filter(|value| self.shows(**value)) {
@@ -142,7 +143,7 @@ impl Axis {
     }
 }
 
-/// An axis with its range, in scaled units, and its pixels.
+/// Axis with its range, in scaled units, and its pixels.
 #[derive(Clone, Debug)]
 pub(super) struct Fitted {
     pub(super) axis: Axis,
@@ -152,31 +153,31 @@ pub(super) struct Fitted {
     pub(super) end: f64,
 }
 
-/// A grid line: its pixel, and its label if it has one.
+/// Grid line: its pixel, and its label if it has one.
 pub(super) type Tick = (f64, Option<String>);
 
 impl Fitted {
-    /// The place of a value from 0 at the start of the axis to 1 at its end.
+    /// Returns the position of a value, from 0 at the start of the axis to 1 at its end.
     pub(super) fn share(&self, value: f64) -> f64 {
         (self.axis.scaled(value) - self.low) / (self.high - self.low)
     }
 
-    /// The pixel a share `t` of the way along the axis.
+    /// Returns the pixel at a share `t` of the way along the axis.
     pub(super) fn along(&self, t: f64) -> f64 {
         self.start + t * (self.end - self.start)
     }
 
-    /// The pixel of a value, moved onto the axis.
+    /// Returns the pixel of a value; values outside are clamped to the ends of the axis.
     pub(super) fn pixel(&self, value: f64) -> f64 {
         self.along(self.share(value).clamp(0.0, 1.0))
     }
 
-    /// Whether the axis spans a value.
+    /// Returns true if the axis spans a value.
     pub(super) fn spans(&self, value: f64) -> bool {
         self.axis.shows(value) && (0.0..=1.0).contains(&self.share(value))
     }
 
-    /// The values at the ends of a linear or logarithmic axis.
+    /// Returns the values at the ends of a linear or logarithmic axis.
     pub(super) fn ends(&self) -> [f64; 2] {
         let ends = [self.low, self.high];
         if self.axis.scale == Scale::Log {
@@ -188,9 +189,9 @@ impl Fitted {
 
     pub(super) fn ticks(&self) -> Vec<Tick> {
         match self.axis.scale {
-            // A shorter axis has few multiples of a power of ten.
+            // A shorter axis has too few multiples of powers of ten.
             Scale::Log if self.high - self.low >= 0.9 => self.log_ticks(),
-            // Its ends are those of the sphere.
+            // The ends of the axis are the poles of the sphere.
             Scale::Sine => self.linear_ticks([-90.0, 90.0]),
             _ => self.linear_ticks(self.ends()),
         }
@@ -235,7 +236,7 @@ impl Fitted {
     }
 }
 
-/// The least of 1, 2, 5, 10 .. times a power of ten that is not much below `step`.
+/// Returns the least of 1, 2, 5, 10 .. times a power of ten that is not much below `step`.
 pub(super) fn nice_step(step: f64) -> f64 {
     let power = 10.0_f64.powf(step.log10().floor());
     let digit = [1.0, 2.0, 5.0]

@@ -1,4 +1,4 @@
-//! Grouped bars.
+//! Charts of bars in groups, such as speeds by operation and instruction set.
 
 use super::axis::Axis;
 use super::canvas::{THIN, TICK, Type};
@@ -6,8 +6,8 @@ use super::frame::{Bar, legend, plot, swatch};
 use super::palette::INK;
 use crate::table::number;
 
-/// Bars in groups, one bar per series in each, with their values at their ends, as SVG. They start at `level`, such as a
-/// ratio of 1; on a logarithmic axis, that of 0 is its lower end. A linear axis spans 0.
+/// Draws bars in groups as SVG, one bar per series in each group, with their values at their ends. The bars start at `level`, such as a
+/// ratio of 1; on a logarithmic axis, a level of 0 is the lower end. A linear axis includes 0.
 ///
 /// ```
 /// use hairis_instruments::plot::{Axis, bars};
@@ -50,7 +50,7 @@ pub fn bars(
             swatch(&mut canvas, (center - half, end), (center + half, base), s);
             bar.whiskers(&mut canvas, center, &y, INK);
             if bar_width > 26.0 {
-                // A bar that hangs from its level has its number below.
+                // The number of a bar that hangs below its level stands below the bar.
                 let ends = [end, y.pixel(bar.low), y.pixel(bar.high)].into_iter();
                 let at = if end > base {
                     ends.fold(end, f64::max) + 9.0

@@ -1,28 +1,28 @@
-//! SVG sheet that charts draw on. Coordinates are written in tenths of a pixel, as whole numbers; consecutive marks of one
-//! style become one path.
+//! SVG sheet that charts draw on. Coordinates are written in tenths of a pixel, as whole numbers; consecutive marks of one style become
+//! one path.
 
 use super::palette::{Color, DASHES, FAINT_INK, INK, MARKERS, PAPER};
 use crate::markup::escape;
 
-/// Width of every sheet, in pixels: half of a wide page, and not much more than a phone, so that letters stay readable there.
+/// Width of every sheet, in pixels: half of a wide page, and little more than a phone, so that letters stay readable on a phone.
 pub(super) const WIDTH: f64 = 520.0;
 
 /// Units of the drawing per pixel.
 const FINE: f64 = 10.0;
 
-/// How a text is set.
+/// Style in which a text is set.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Type {
     pub(super) size: f64,
-    /// Which part of the text is at its place: `start`, `middle` or `end`.
+    /// Part of the text that lies at its place: `start`, `middle` or `end`.
     pub(super) anchor: &'static str,
     pub(super) bold: bool,
-    /// Reads from the bottom to the top.
+    /// Whether the text runs from the bottom to the top.
     pub(super) upright: bool,
     pub(super) color: Color,
 }
 
-/// Names of axes and entries of legends.
+/// Type of the names of axes and of the entries of legends.
 pub(super) const LABEL: Type = Type {
     size: 15.5,
     anchor: "middle",
@@ -30,13 +30,13 @@ pub(super) const LABEL: Type = Type {
     upright: false,
     color: INK,
 };
-/// Labels of ticks, and notes.
+/// Type of the labels of ticks, and of notes.
 pub(super) const TICK: Type = Type {
     size: 14.0,
     color: FAINT_INK,
     ..LABEL
 };
-/// Titles of panels.
+/// Type of the titles of panels.
 pub(super) const HEADING: Type = Type {
     bold: true,
     ..LABEL
@@ -46,12 +46,12 @@ const TITLE: Type = Type {
     ..HEADING
 };
 
-/// How a line is drawn.
+/// Style in which a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pen {
     pub(super) color: Color,
     pub(super) width: f64,
-    /// Its number among the dashes.
+    /// Index of the pattern among the dashes.
     pub(super) dash: usize,
     pub(super) alpha: f64,
 }
@@ -67,18 +67,18 @@ impl Pen {
     }
 }
 
-/// Frames and ticks.
+/// Pen of frames and ticks.
 pub(super) const THIN: Pen = Pen::new(INK, 1.0);
-/// Grid lines, which let colours through.
+/// Pen of grid lines, which let colours through.
 pub(super) const GRID: Pen = Pen {
     alpha: 0.14,
     ..THIN
 };
 
-/// A place on the sheet, pixels from its top left.
+/// Place on the sheet, in pixels from its top left.
 pub(super) type Place = (f64, f64);
 
-/// The drawing so far, and the path that is being gathered: its style and its data.
+/// Sheet with the drawing so far, and the path that is being gathered, with its style.
 #[derive(Default)]
 pub(super) struct Canvas {
     title: String,
@@ -104,7 +104,7 @@ fn path_data(points: &[Place]) -> String {
 }
 
 impl Canvas {
-    /// A sheet with its title, and the height below which it is empty.
+    /// Makes a sheet with its title, and returns it with the height below which the sheet is empty.
     pub(super) fn new(title: &str) -> (Self, f64) {
         let mut canvas = Self {
             title: escape(title),
@@ -114,9 +114,9 @@ impl Canvas {
         (canvas, bottom)
     }
 
-    /// The SVG, cut off at `height`, with a description for those who do not see it.
+    /// Returns the SVG, cut off at `height`, with a description for readers who do not see the chart.
     ///
-    /// It has no ids at all, so that any number of them can stand in one page.
+    /// The SVG has no ids at all, so that any number of charts can stand in one page.
     pub(super) fn finish(mut self, description: &str, height: f64) -> String {
         self.flush();
         let Self { title, svg, .. } = self;
@@ -129,7 +129,7 @@ impl Canvas {
         )
     }
 
-    /// Adds to the path of this style.
+    /// Adds data to the path of this style, and ends the path of another style.
     fn add(&mut self, style: String, data: &str) {
         if style != self.style {
             self.flush();
@@ -180,7 +180,7 @@ impl Canvas {
     }
 
     pub(super) fn dot(&mut self, (x, y): Place, radius: f64, color: Color, alpha: f64) {
-        // A line of no length with round ends is a disc.
+        // A line of no length with round ends appears as a disc.
         let width = fine(2.0 * radius);
         let style = format!(
             "stroke=\"{color}\" stroke-width=\"{width}\" stroke-linecap=\"round\" opacity=\"{alpha}\""
@@ -188,7 +188,7 @@ impl Canvas {
         self.add(style, &format!("M{} {}h0", fine(x), fine(y)));
     }
 
-    /// The marker of the series number `index`.
+    /// Draws the marker of the series with number `index`.
     pub(super) fn marker(&mut self, (x, y): Place, index: usize, color: Color) {
         const SIZE: f64 = 4.2;
         let shape = MARKERS[index % MARKERS.len()];
@@ -202,7 +202,7 @@ impl Canvas {
         self.add(format!("fill=\"{color}\""), &(path_data(&corners) + "z"));
     }
 
-    /// A text whose middle height is at `place`.
+    /// Draws a text whose middle height is at a place.
     pub(super) fn text(&mut self, text: &str, (x, y): Place, set: Type) {
         self.flush();
         let Type {
@@ -232,7 +232,8 @@ impl Canvas {
         ));
     }
 
-    /// A text in lines no wider than `width` pixels, as far as words and hyphens allow, and the middle height of the line below it.
+    /// Draws a text in lines no wider than `width` pixels, as far as words and hyphens allow. Returns the middle height of the line
+    /// below.
     pub(super) fn lines(&mut self, text: &str, (x, mut y): Place, width: f64, set: Type) -> f64 {
         let mut line = String::new();
         for word in text.split_whitespace() {
@@ -255,7 +256,7 @@ impl Canvas {
 }
 
 impl Type {
-    /// Width of a text in pixels, as an estimate a little on the safe side.
+    /// Returns the width of a text in pixels, as an estimate a little on the safe side.
     pub(super) fn width(self, text: &str) -> f64 {
         let wide = |c: char| match c {
             'i' | 'j' | 'l' | 'I' | '|' | '.' | ',' | ':' | ';' | '\'' | ' ' | '(' | ')' => 0.36,

@@ -1,21 +1,21 @@
-//! Parts common to charts: the axes with their grid, bars of errors, and the legend.
+//! Parts that charts share: the axes with their grid, error bars, and the legend.
 
 use super::axis::{Axis, Fitted};
 use super::canvas::{Canvas, GRID, LABEL, Pen, Place, THIN, TICK, Type, WIDTH};
 use super::palette::{Color, series_color};
 use crate::stats::Estimate;
 
-/// Distance of the entries of a legend.
+/// Distance between the lines of a legend, in pixels.
 const LEGEND_LINE: f64 = 23.0;
 
-/// A value, as the height of a bar or of a point, with whiskers if they differ from it.
+/// Value that a bar or a point shows, with whiskers if their ends differ from each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bar {
-    /// The value; nothing is drawn of one that is not finite.
+    /// Value, which is drawn only if it is finite.
     pub value: f64,
-    /// Lower end of its whiskers.
+    /// Lower end of the whiskers.
     pub low: f64,
-    /// Upper end of its whiskers.
+    /// Upper end of the whiskers.
     pub high: f64,
 }
 
@@ -29,7 +29,7 @@ impl From<f64> for Bar {
     }
 }
 
-/// Whiskers of one standard error.
+/// Makes whiskers of one standard error to either side.
 impl From<Estimate> for Bar {
     fn from(
         Estimate {
@@ -46,7 +46,7 @@ impl From<Estimate> for Bar {
 }
 
 impl Bar {
-    /// Draws its whiskers, cut to the plot, at the pixel `x`.
+    /// Draws the whiskers at the pixel `x`, cut to the plot.
     pub(super) fn whiskers(&self, canvas: &mut Canvas, x: f64, y: &Fitted, color: Color) {
         if self.high > self.low {
             let (pen, low, high) = (Pen::new(color, 1.5), y.pixel(self.low), y.pixel(self.high));
@@ -58,7 +58,7 @@ impl Bar {
     }
 }
 
-/// A sheet with its title, and the axes of a plot of `height` below it, wide enough for their values.
+/// Makes a sheet with its title, and below it the axes of a plot of `height`, wide enough for their values.
 pub(super) fn plot(
     title: &str,
     height: f64,
@@ -80,7 +80,7 @@ fn widest_label(axis: &Fitted) -> f64 {
         .fold(20.0, f64::max)
 }
 
-/// Draws an axis at the start of another one, with its grid lines across to the end of that.
+/// Draws an axis at the start of the axis `across`, with grid lines to the end of `across`.
 pub(super) fn draw_axis(canvas: &mut Canvas, axis: &Fitted, across: &Fitted, upright: bool) {
     let place = |along: f64, across: f64| {
         if upright {
@@ -124,7 +124,7 @@ pub(super) fn draw_axis(canvas: &mut Canvas, axis: &Fitted, across: &Fitted, upr
     );
 }
 
-/// Draws a legend below `top`, each entry with its mark, and returns where it ends.
+/// Draws a legend below `top`, each entry with its mark, and returns the height at which the legend ends.
 pub(super) fn legend(
     canvas: &mut Canvas,
     names: &[&str],
@@ -159,7 +159,8 @@ pub(super) fn legend(
     top + rows as f64 * LEGEND_LINE
 }
 
-/// A bar of the series number `index`: framed, and of another strength for each so that it survives grey printing.
+/// Draws a bar of the series with number `index`. The bar is framed, and its strength depends on the series so that it survives grey
+/// printing.
 pub(super) fn swatch(canvas: &mut Canvas, low: Place, high: Place, index: usize) {
     let color = series_color(index);
     canvas.block(low, high, color, [1.0, 0.5, 0.2, 0.75][index % 4]);

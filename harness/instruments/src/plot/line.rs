@@ -1,23 +1,23 @@
-//! Lines through points with errors.
+//! Charts of lines through points, with error bars.
 
 use super::axis::{Axis, Fitted};
 use super::canvas::{Canvas, LABEL, Pen, THIN};
 use super::frame::{Bar, draw_axis, legend, plot};
 use super::palette::{DOTS, INK, series_color};
 
-/// A named line through points `(x, y)`.
+/// Named line through points `(x, y)` of a chart of [`lines`].
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub struct Series {
     name: String,
     points: Vec<(f64, Bar)>,
     markers: bool,
-    /// In place of the next one.
+    /// Pen in place of the one that belongs to the number of the series.
     pen: Option<Pen>,
 }
 
 impl Series {
-    /// A line with a marker at each point, for measured values; their errors are drawn as bars.
+    /// Makes a line for measured values, with a marker at each point and errors drawn as bars.
     pub fn new<B: Into<Bar>>(
         name: impl Into<String>,
         points: impl IntoIterator<Item = (f64, B)>,
@@ -31,7 +31,7 @@ impl Series {
         }
     }
 
-    /// A line without markers, for functions.
+    /// Makes a line without markers, for the values of functions.
     pub fn curve(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         Self {
             markers: false,
@@ -39,7 +39,7 @@ impl Series {
         }
     }
 
-    /// A dotted line to compare others with.
+    /// Makes a dotted line without markers, for other lines to be compared with.
     pub fn guide(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         Self {
             pen: Some(Pen {
@@ -50,7 +50,7 @@ impl Series {
         }
     }
 
-    /// The numbers of its colour and of its dash, in place of the next ones: for series that belong together.
+    /// Sets the numbers of the colour and of the dash, in place of the next ones: for series that belong together.
     pub fn styled(self, color: usize, dash: usize) -> Self {
         Self {
             pen: Some(pen(color, dash)),
@@ -61,7 +61,7 @@ impl Series {
     fn draw(&self, canvas: &mut Canvas, index: usize, x: &Fitted, y: &Fitted) {
         let pen = self.pen.unwrap_or(pen(index, index));
         let place = |(at, bar): &(f64, Bar)| (x.pixel(*at), y.pixel(bar.value));
-        // What cannot be shown breaks the line.
+        // Points that cannot be shown break the line.
         for run in self
             .points
             .split(|(at, bar)| !x.spans(*at) || !y.spans(bar.value))
@@ -81,7 +81,7 @@ impl Series {
     }
 }
 
-/// The pen of a colour and a dash, by their numbers.
+/// Returns the pen of a colour and a dash, by their numbers.
 pub(super) const fn pen(color: usize, dash: usize) -> Pen {
     Pen {
         dash,
@@ -89,7 +89,7 @@ pub(super) const fn pen(color: usize, dash: usize) -> Pen {
     }
 }
 
-/// Series of points over two axes, as SVG.
+/// Draws series of points over two axes, with a legend, as SVG.
 ///
 /// ```
 /// use hairis_instruments::plot::{Axis, Series, lines};

@@ -1,8 +1,8 @@
-//! Colours, dashes and markers: told apart by people who see colours differently, and on paper without colours.
+//! Colours, dashes and markers that people with any colour vision can tell apart, also on paper without colours.
 
 use core::fmt;
 
-/// A colour of sRGB, `0xRRGGBB`.
+/// Colour in sRGB, as `0xRRGGBB`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Color(u32);
 
@@ -12,7 +12,7 @@ impl fmt::Display for Color {
     }
 }
 
-/// From `start` at 0 to `end` at 1.
+/// Mixes two colours, from `start` at `t` = 0 to `end` at 1.
 fn mix(start: u32, end: u32, t: f64) -> Color {
     let channel = |shift: u32| {
         let [a, b] = [start, end].map(|color| f64::from((color >> shift) & 0xFF));
@@ -29,21 +29,21 @@ fn mix(start: u32, end: u32, t: f64) -> Color {
 
 const WHITE: u32 = 0xFF_FFFF;
 
-/// Text and axes.
+/// Colour of text and axes.
 pub(super) const INK: Color = Color(0x22_2222);
-/// Tick labels and notes.
+/// Colour of tick labels and notes.
 pub(super) const FAINT_INK: Color = Color(0x55_5555);
-/// The sheet itself: always white, so that a plot stays readable on a dark page.
+/// Colour of the sheet, which is always white so that a plot stays readable on a dark page.
 pub(super) const PAPER: Color = Color(WHITE);
-/// Marks one direction on a map.
+/// Colour of the mark of one direction on a map.
 pub(super) const MARK: Color = Color(0xAA_003C);
 
-/// The colours of Okabe and Ito (2008), darkest contrasts first; the yellow, too pale for lines on white, is last.
+/// Colours of Okabe and Ito (2008), darkest contrasts first; the yellow, too pale for lines on white, is last.
 const SERIES: [u32; 7] = [
     0x00_72B2, 0xD5_5E00, 0x00_9E73, 0xCC_79A7, 0x56_B4E9, 0x22_2222, 0xE6_9F00,
 ];
 
-/// The colour of the series number `index`.
+/// Returns the colour of the series with number `index`.
 pub(super) const fn series_color(index: usize) -> Color {
     Color(SERIES[index % SERIES.len()])
 }
@@ -54,7 +54,7 @@ const VIRIDIS: [u32; 9] = [
     0xFD_E725,
 ];
 
-/// Perceptually uniform (viridis), dark to bright as `t` goes from 0 to 1.
+/// Returns a colour of viridis, which is perceptually uniform, from dark to bright as `t` goes from 0 to 1.
 pub(super) fn scale_color(t: f64) -> Color {
     #[expect(
         clippy::cast_possible_truncation,
@@ -65,23 +65,23 @@ pub(super) fn scale_color(t: f64) -> Color {
     mix(VIRIDIS[step], VIRIDIS[step + 1], 8.0 * t - step as f64)
 }
 
-/// Blue below 0.5, white there, vermilion above: both ends as dark, and apart for everyone.
+/// Returns blue below 0.5, white at 0.5 and vermilion above. Both ends are equally dark, and everyone can tell them apart.
 pub(super) fn signed_color(t: f64) -> Color {
     mix(WHITE, SERIES[usize::from(t >= 0.5)], (2.0 * t - 1.0).abs())
 }
 
-/// A pale background that dark dots stand out from: white to a soft ochre.
+/// Returns a pale background, from white to a soft ochre, from which dark dots stand out.
 pub(super) fn soft_color(t: f64) -> Color {
     mix(WHITE, 0xF0_B246, t)
 }
 
-/// Lengths drawn and left out in turn, in tenths of a pixel: none, dashes, dashes and dots, dots, long dashes.
+/// Lengths that are drawn and left out in turn, in tenths of a pixel: none, dashes, dashes and dots, dots, long dashes.
 pub(super) const DASHES: [&str; 5] = ["none", "80 40", "90 30 20 30", "20 30", "160 50"];
 
-/// The number of dots among the dashes.
+/// Index of the dots among the dashes.
 pub(super) const DOTS: usize = 3;
 
-/// The number of the marker that is a cross.
+/// Index of the cross among the markers.
 pub(super) const CROSS: usize = 4;
 
 /// Corners of the markers, x and y in turn: disc (without corners), square, triangle, diamond, cross, inverted triangle.

@@ -1,14 +1,14 @@
-//! Charts as PNG, for where SVG is not taken.
+//! Charts as PNG, for hosts that do not accept SVG.
 //!
-//! Text is set in a font that is part of the program (`DejaVu Sans`, cut down to what charts use; see `font/LICENSE`): a
-//! machine without fonts draws the same picture, byte by byte.
+//! Text is set in a font that is part of the program (`DejaVu Sans`, reduced to the characters that charts use; see `font/LICENSE`), so
+//! that a machine without fonts draws the same picture, byte by byte.
 
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 use std::io;
 use std::sync::Arc;
 
-/// Pixels of the picture to one of the chart.
+/// Pixels of the picture per pixel of the chart.
 const SCALE: f32 = 2.0;
 
 const FONTS: [&[u8]; 2] = [
@@ -16,11 +16,11 @@ const FONTS: [&[u8]; 2] = [
     include_bytes!("font/DejaVuSans-Bold.ttf"),
 ];
 
-/// A chart as a PNG of twice its size in pixels.
+/// Renders a chart as a PNG with twice its width and height in pixels.
 ///
 /// # Errors
 ///
-/// If `svg` is no drawing, or one without extent: never for those of this module.
+/// Returns an error if `svg` is not a drawing, or a drawing without extent. The charts of this module never are.
 ///
 /// ```
 /// use hairis_instruments::plot::{Axis, Series, lines, png};
@@ -62,7 +62,7 @@ fn draw(svg: &str) -> io::Result<Pixmap> {
 mod tests {
     use super::*;
 
-    /// Pixels of a line of text that are not white.
+    /// Returns the number of dark pixels of a line of text.
     fn ink(text: &str, weight: &str) -> usize {
         let svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"60\" height=\"30\"><rect width=\"60\" height=\"30\" \

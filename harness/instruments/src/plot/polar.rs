@@ -1,4 +1,4 @@
-//! Values around a point.
+//! Polar charts, which show values as distances from a centre.
 
 use super::axis::{Axis, nice_step};
 use super::canvas::{Canvas, GRID, HEADING, LABEL, Pen, Place, THIN, TICK, Type, WIDTH};
@@ -6,24 +6,24 @@ use super::frame::legend;
 use super::line::pen;
 use super::palette::{INK, PAPER};
 
-/// One circle of a polar chart.
+/// Circle of a polar chart, with a title, lines and a marked angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolarPanel {
-    /// The title.
+    /// Title above the circle.
     pub title: String,
     /// Name of the angle, counted anticlockwise from the right.
     pub angle: String,
-    /// Lines of (angle in radians, value).
+    /// Lines as points of (angle in radians, value).
     pub lines: Vec<Vec<(f64, f64)>>,
-    /// An angle (radians) that is pointed out, such as that of the viewer, by name.
+    /// Name and angle (radians) of a direction that is pointed out, such as that of the viewer.
     pub arrow: (String, f64),
 }
 
 /// Radius of a circle, in pixels.
 const RADIUS: f64 = 165.0;
 
-/// Values as distances from a centre, in circles one below the other with their own scales, as SVG; the lines of every circle
-/// have the same `names`.
+/// Draws values as distances from a centre, as SVG. The circles stand one below the other, each with a scale of its own, and the lines
+/// of every circle have the same `names`.
 ///
 /// ```
 /// use hairis_instruments::plot::{PolarPanel, polar};

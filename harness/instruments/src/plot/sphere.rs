@@ -1,4 +1,5 @@
-//! Maps of the sphere, the azimuth to the right, the inclination upwards by its sine: equal solid angles have equal areas.
+//! Maps of the sphere, with the azimuth to the right and the inclination upwards by its sine, so that equal solid angles have equal
+//! areas.
 
 use super::axis::{Axis, Fitted};
 use super::canvas::{Canvas, HEADING, Place, THIN, TICK, Type, WIDTH};
@@ -7,7 +8,7 @@ use super::palette::{CROSS, Color, MARK, scale_color, series_color, signed_color
 use crate::table::number;
 use core::f64::consts::PI;
 
-/// Values on a map of the sphere, in cells of equal solid angle.
+/// Grid of values on a map of the sphere, in cells of equal solid angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SphereGrid {
     columns: usize,
@@ -15,7 +16,7 @@ pub struct SphereGrid {
 }
 
 impl SphereGrid {
-    /// `value(theta, phi)` in the middle of each of `rows` by `columns` cells; angles in radians.
+    /// Evaluates `value(theta, phi)` in the middle of each of `rows` by `columns` cells; angles are in radians.
     #[must_use]
     pub fn sample((rows, columns): (u16, u16), value: &mut dyn FnMut(f64, f64) -> f64) -> Self {
         let middle = |i: u16, n: u16| 2.0 * (f64::from(i) + 0.5) / f64::from(n) - 1.0;
@@ -30,14 +31,14 @@ impl SphereGrid {
         }
     }
 
-    /// The least and the greatest finite value.
+    /// Returns the least and the greatest finite value, or `None` if no value is finite.
     #[must_use]
     pub fn range(&self) -> Option<(f64, f64)> {
         let finite = || self.values.iter().copied().filter(|v| v.is_finite());
         Some((finite().reduce(f64::min)?, finite().reduce(f64::max)?))
     }
 
-    /// Fills the map of `x` and `y` with the colours of `color`, which maps 0 .. 1, drawn in `levels` steps.
+    /// Fills the map of `x` and `y` with colours, in `levels` steps. `share` maps a value to 0 .. 1, and `color` maps that to a colour.
     fn fill(
         &self,
         canvas: &mut Canvas,
@@ -54,8 +55,8 @@ impl SphereGrid {
                 y.along(1.0 - row as f64 / rows as f64),
             )
         };
-        // One pass a colour, each over all cells of that colour and of later ones: a colour becomes one path, and no
-        // paper shines through the seams between colours.
+        // There is one pass per colour, each over all cells of that colour and of later ones. A colour thus becomes one path, and no
+        // paper shows through the seams between colours.
         for level in (0..levels).map(f64::from) {
             let is = |v: f64| v.is_finite() && (share(v).clamp(0.0, 1.0) * last).round() >= level;
             for (row, values) in self.values.chunks_exact(self.columns).enumerate() {
@@ -77,7 +78,7 @@ impl SphereGrid {
     }
 }
 
-/// A map from `low` to `high`: draws what `paint` does, then the axes over it.
+/// Draws a map between the corners `low` and `high`: first what `paint` draws, then the axes over it.
 fn map(
     canvas: &mut Canvas,
     inclination: &str,
@@ -98,7 +99,7 @@ fn map(
     canvas.frame(low, high, THIN);
 }
 
-/// The place of a direction (radians) on a map.
+/// Returns the place of a direction (radians) on a map.
 fn place(x: &Fitted, y: &Fitted, [theta, phi]: [f64; 2]) -> Place {
     let turns = phi / (2.0 * PI) + 0.5;
     (
@@ -107,8 +108,8 @@ fn place(x: &Fitted, y: &Fitted, [theta, phi]: [f64; 2]) -> Place {
     )
 }
 
-/// A map of the sphere coloured by a scalar, as SVG, with a bar of its colours: viridis; if some values are negative, blue
-/// and vermilion either side of white. `value` says what the numbers are and how colours spread over them.
+/// Draws a map of the sphere coloured by a scalar, as SVG, with a bar of its colours. The colours are viridis, or blue and vermilion to
+/// either side of white if some values are negative. The axis `value` says what the numbers are and how colours spread over them.
 ///
 /// ```
 /// use hairis_instruments::plot::{Axis, SphereGrid, heat_map};
@@ -120,7 +121,7 @@ pub fn heat_map(title: &str, value: Axis, grid: &SphereGrid) -> String {
     const STEPS: u16 = 64;
     let (mut canvas, top) = Canvas::new(title);
     let (low, high) = ((70.0, top), (WIDTH - 20.0, top + 240.0));
-    // The colours end where the values do; white is in the middle of differences.
+    // The colours end with the values; if some values are negative, white is in the middle.
     let (least, most) = grid.range().unwrap_or((0.0, 1.0));
     let (start, color): (f64, fn(f64) -> Color) = if least < 0.0 {
         (-most.max(-least), signed_color)
@@ -165,18 +166,18 @@ pub fn heat_map(title: &str, value: Axis, grid: &SphereGrid) -> String {
     )
 }
 
-/// One map of directions.
+/// Map of directions: a title, the directions as dots, and a density behind them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatterPanel {
     /// Title of the map.
     pub title: String,
     /// Directions as `theta` and `phi` in radians.
     pub points: Vec<[f64; 2]>,
-    /// A density shown behind the points, from white at 0 to a pale colour at its greatest value.
+    /// Density that is shown behind the points, from white at 0 to a pale colour at its greatest value.
     pub density: SphereGrid,
 }
 
-/// Directions as dots on maps of the sphere, two in a row, as SVG. A direction `at` (radians), such as that to the viewer, is
+/// Draws directions as dots on maps of the sphere, two in a row, as SVG. A direction `at` (radians), such as that to the viewer, is
 /// marked on every map.
 ///
 /// ```
@@ -201,7 +202,7 @@ pub fn scatter_maps(title: &str, panels: &[ScatterPanel], mark: &str, at: [f64; 
                 (low, (low.0 + SIZE.0, low.1 + SIZE.1)),
                 &|canvas, x, y| {
                     let most = panel.density.range().map_or(0.0, |(_, high)| high);
-                    // The square root lets the tails show.
+                    // The square root keeps the tails visible.
                     let share = |v: f64| {
                         if most > 0.0 {
                             (v / most).max(0.0).sqrt()

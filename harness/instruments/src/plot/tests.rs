@@ -1,4 +1,4 @@
-//! Charts of odd data are charts.
+//! Tests that charts of odd data are valid charts.
 
 use super::*;
 use crate::markup::well_formed;
@@ -169,7 +169,7 @@ fn text_is_escaped() {
 
 #[test]
 fn a_line_lies_where_its_points_are() {
-    // The diagonal of the plot ends in two corners of the frame; points outside of it are left out.
+    // The diagonal of the plot ends in two corners of the frame; points outside the plot are left out.
     let axes = (
         Axis::linear("x").range(0.0, 10.0),
         Axis::linear("y").range(0.0, 1.0),

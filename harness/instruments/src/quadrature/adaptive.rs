@@ -3,8 +3,8 @@
 use core::array;
 use std::collections::BTreeMap;
 
-/// Positive nodes of the 15-point Kronrod rule, outermost first, then 0, each with its weight and that of the embedded 7-point
-/// Gauss rule, 0 at the nodes it lacks (QUADPACK, Piessens et al. 1983).
+/// Positive nodes of the 15-point Kronrod rule, outermost first, then 0. Each node has its weight and that of the embedded 7-point
+/// Gauss rule, which is 0 at the nodes that the Gauss rule lacks (QUADPACK, Piessens et al. 1983).
 const RULE: [[f64; 3]; 8] = [
     [
         0.991_455_371_120_812_639_206,
@@ -48,19 +48,19 @@ const RULE: [[f64; 3]; 8] = [
     ],
 ];
 
-/// Tolerance of an adaptive integral.
+/// Tolerance of an adaptive integral, met by an error within the absolute or the relative bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Absolute error allowed in each component, in the unit of the integral.
     pub absolute: f64,
-    /// Error allowed in each component relative to the largest component of the integral.
+    /// Error allowed in each component, relative to the largest component of the integral.
     pub relative: f64,
-    /// Limit on panels (or cells); at it the result is marked as not converged.
+    /// Largest number of panels (or cells), at which refinement stops whether or not the tolerance is met.
     pub max_panels: usize,
 }
 
 impl Default for Tolerance {
-    /// 1e-10 relative, 1e-300 absolute, at most 20 000 panels.
+    /// Returns a tolerance of 1e-10 relative and 1e-300 absolute error, with at most 20 000 panels.
     fn default() -> Self {
         Self {
             absolute: 1e-300,
@@ -71,7 +71,7 @@ impl Default for Tolerance {
 }
 
 impl Tolerance {
-    /// The default with another relative error.
+    /// Returns the default tolerance with another relative error.
     #[must_use]
     pub fn relative(relative: f64) -> Self {
         Self {
@@ -80,7 +80,7 @@ impl Tolerance {
         }
     }
 
-    /// Whether an integral with these errors, all numbers, is within the tolerance.
+    /// Returns true if an integral with these errors is within the tolerance and all its components are finite.
     pub(crate) fn is_met(&self, value: &[f64], error: &[f64]) -> bool {
         let largest = value.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
         let allowed = self.absolute.max(self.relative * largest);
@@ -88,32 +88,32 @@ impl Tolerance {
     }
 }
 
-/// An integral and its error estimate.
+/// Integral with its error estimate, as the adaptive rules return it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Integral<const N: usize> {
-    /// The integral, one component an element.
+    /// Value of each component of the integral.
     pub value: [f64; N],
-    /// Bound estimate of each component's error: usually far above the true error.
+    /// Estimated bound on the error of each component, usually far above the true error.
     pub error: [f64; N],
-    /// Whether the tolerance was met.
+    /// Whether the error estimate met the tolerance.
     pub converged: bool,
 }
 
-/// Most components of an integrand.
+/// Largest number of components of an integrand.
 const MOST: usize = 8;
 
-/// Components of an integrand, the rest 0: rules of one size are compiled once for all integrands.
+/// Components of an integrand, padded with zeros, so that rules of one size are compiled once for all integrands.
 type Components = [f64; MOST];
 
-/// Sums of values, and sums of errors.
+/// Sums of the values and sums of the errors of panels.
 type Sums = [Components; 2];
 
-/// A part of the domain with its integral.
+/// Part of the domain with its integral.
 struct Panel {
     lo: [f64; 2],
     hi: [f64; 2],
     sums: Sums,
-    /// The axis of the larger error.
+    /// Axis of the larger error, along which the panel is split.
     split: usize,
 }
 
@@ -122,11 +122,11 @@ type Panels = BTreeMap<[u64; 3], Panel>;
 
 impl Panel {
     fn key(&self) -> [u64; 3] {
-        // A NaN counts as an infinite error, so that it is split, reported and never hidden.
+        // A NaN counts as an infinite error, so that the panel is split, and the NaN is reported and never hidden.
         let worst = self.sums[1].iter().fold(0.0, |a: f64, &e| {
             a.max(if e.is_nan() { f64::INFINITY } else { e })
         });
-        // Bits in the order of the numbers.
+        // Maps the numbers to integers with the same order.
         [worst, self.lo[0], self.lo[1]].map(|x| {
             if x.is_sign_negative() {
                 !x.to_bits()
@@ -137,20 +137,21 @@ impl Panel {
     }
 }
 
-/// Breakpoints that announce a bell: its centre, and 3 and 12 widths either side, in the unit of the arguments.
+/// Returns the breakpoints that announce a bell: its centre, and 3 and 12 widths to either side, in the unit of the arguments.
 ///
-/// Panels beside them shrink fast enough to resolve the bell however narrow it is; the centre alone is not enough for a Gaussian.
+/// Panels beside the breakpoints shrink fast enough to resolve the bell however narrow it is; the centre alone is not enough for a
+/// Gaussian.
 #[must_use]
 pub fn bell_breakpoints(centre: f64, width: f64) -> [f64; 5] {
     [-12.0, -3.0, 0.0, 3.0, 12.0].map(|k| centre + k * width)
 }
 
-/// Integral of `f` over the interval from the smallest to the largest of `breakpoints`.
+/// Integrates `f` over the interval from the smallest to the largest of `breakpoints`.
 ///
-/// Gauss-Kronrod 7-15 on each interval between breakpoints, then on halves of the worst panel until the summed error estimate meets the tolerance. The ends
-/// are never evaluated.
+/// Applies the Gauss-Kronrod rule 7-15 to each interval between breakpoints, and then to the halves of the worst panel until the summed
+/// error estimate meets the tolerance. The ends are never evaluated.
 ///
-/// - Shape: `breakpoints` in any order, at least two that differ; else the integral is 0. At most 6 components.
+/// - Shape: `breakpoints` in any order, of which at least two must differ, or the integral is 0. At most eight components.
 ///
 /// # Examples
 /// ```
@@ -174,12 +175,12 @@ pub fn integrate<const N: usize>(
     .leading()
 }
 
-/// Integral of `f(x, y)` over the rectangle spanned by two sets of breakpoints.
+/// Integrates `f(x, y)` over the rectangle spanned by two sets of breakpoints.
 ///
-/// The product of two 15-point Kronrod rules on each cell; the Gauss rule on each of its lines gives the error along either axis. The worst cell is halved
-/// along its worse axis. The edges are never evaluated.
+/// Applies the product of two 15-point Kronrod rules to each cell; the Gauss rule on each of the cell's lines yields the error along
+/// either axis. The worst cell is halved along its worse axis. The edges are never evaluated.
 ///
-/// - Shape: as for [`integrate`], on each axis. Tilted ridges cost many cells: choose coordinates that follow the lobes.
+/// - Shape: as for [`integrate`], on each axis. Tilted ridges cost many cells, so choose coordinates that follow the lobes.
 pub fn integrate_rectangle<const N: usize>(
     mut f: impl FnMut(f64, f64) -> [f64; N],
     x_breakpoints: &[f64],
@@ -198,7 +199,7 @@ pub fn integrate_rectangle<const N: usize>(
 }
 
 impl Integral<MOST> {
-    /// The components that the integrand has.
+    /// Returns the components that the integrand has.
     fn leading<const N: usize>(&self) -> Integral<N> {
         let [value, error] = [self.value, self.error].map(|all| array::from_fn(|c| all[c]));
         Integral {
@@ -209,13 +210,13 @@ impl Integral<MOST> {
     }
 }
 
-/// The components of an integrand among the most.
+/// Pads the components of an integrand with zeros.
 fn padded<const N: usize>(y: [f64; N]) -> Components {
     const { assert!(N <= MOST, "too many components") };
     array::from_fn(|c| if c < N { y[c] } else { 0.0 })
 }
 
-/// The rule on a part of a line.
+/// Applies the rule to a part of a line.
 fn on_line(f: &mut dyn FnMut(f64) -> Components, lo: [f64; 2], hi: [f64; 2]) -> Panel {
     let (centre, half) = (0.5 * (lo[0] + hi[0]), 0.5 * (hi[0] - lo[0]));
     let (mut kronrod, mut gauss) = ([0.0; MOST], [0.0; MOST]);
@@ -233,14 +234,14 @@ fn on_line(f: &mut dyn FnMut(f64) -> Components, lo: [f64; 2], hi: [f64; 2]) -> 
     }
 }
 
-/// The product rule on a cell.
+/// Applies the product rule to a cell.
 fn on_rectangle(f: &mut dyn FnMut(f64, f64) -> Components, lo: [f64; 2], hi: [f64; 2]) -> Panel {
     let nodes = nodes();
     let centre = [0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1])];
     let half = [0.5 * (hi[0] - lo[0]), 0.5 * (hi[1] - lo[1])];
     let area = half[0] * half[1];
     let mut value = [0.0; MOST];
-    // Errors are summed line by line in absolute value: on a tilted edge the lines' errors have both signs and would cancel.
+    // Errors are summed line by line in absolute value: on a tilted edge, the errors of the lines have both signs and would cancel.
     let (mut error_x, mut error_y) = ([0.0; MOST], [0.0; MOST]);
     let mut columns = [([0.0; MOST], [0.0; MOST]); 15];
     for [x, kx, gx] in nodes {
@@ -269,7 +270,7 @@ fn on_rectangle(f: &mut dyn FnMut(f64, f64) -> Components, lo: [f64; 2], hi: [f6
     }
 }
 
-/// The fifteen nodes on [-1, 1], each with its Kronrod and its Gauss weight.
+/// Returns the fifteen nodes on [-1, 1], each with its Kronrod and its Gauss weight.
 fn nodes() -> [[f64; 3]; 15] {
     array::from_fn(|i| {
         let [x, kronrod, gauss] = RULE[i / 2];
@@ -284,12 +285,12 @@ fn add(sum: &mut Components, weight: f64, y: Components) {
     }
 }
 
-/// Distances between the components.
+/// Returns the distance between `a` and `b` in each component.
 fn distance(a: Components, b: Components) -> Components {
     array::from_fn(|c| (a[c] - b[c]).abs())
 }
 
-/// Breakpoints sorted, finite and without repeats.
+/// Returns the finite breakpoints, sorted and without repeats.
 fn clean(breakpoints: &[f64]) -> Vec<f64> {
     let mut edges: Vec<f64> = breakpoints
         .iter()
@@ -301,7 +302,7 @@ fn clean(breakpoints: &[f64]) -> Vec<f64> {
     edges
 }
 
-/// Splits the panel of the largest error until the total meets the tolerance.
+/// Splits the panel with the largest error until the total meets the tolerance.
 fn adapt(
     domain: &[([f64; 2], [f64; 2])],
     tolerance: &Tolerance,
@@ -320,7 +321,7 @@ fn adapt(
     loop {
         let at_limit = panels.len() + done.len() >= tolerance.max_panels;
         if at_limit || panels.is_empty() || tolerance.is_met(&running[0], &running[1]) {
-            // The running sums drift by rounding; only fresh sums decide on convergence.
+            // The running sums drift by rounding, so only fresh sums decide on convergence.
             running = total(&panels, &done);
             if at_limit || tolerance.is_met(&running[0], &running[1]) {
                 break;
@@ -354,7 +355,7 @@ fn adapt(
     }
 }
 
-/// Sums over all panels, by ascending error, which is also roughly ascending value: small terms first.
+/// Sums all panels by ascending error, which is also roughly ascending value, so that small terms are added first.
 fn total(panels: &Panels, done: &Panels) -> Sums {
     let all: BTreeMap<_, _> = panels.iter().chain(done).collect();
     let mut sums = [[0.0; MOST]; 2];

@@ -1,8 +1,8 @@
-//! Gauss-Legendre rules, nodes computed by Newton's method.
+//! Gauss-Legendre rules of any order, whose nodes are computed by Newton's method.
 
 use core::f64::consts::PI;
 
-/// A Gauss-Legendre rule: exact for polynomials of degree `2 order - 1`.
+/// Gauss-Legendre rule, which is exact for polynomials of degree `2 order - 1`.
 ///
 /// # Examples
 /// ```
@@ -17,7 +17,7 @@ pub struct GaussLegendre {
 }
 
 impl GaussLegendre {
-    /// The rule of `order` nodes; 0 is taken as 1.
+    /// Computes the rule with `order` nodes; an order of 0 is taken as 1.
     #[must_use]
     pub fn new(order: usize) -> Self {
         let n = order.max(1);
@@ -47,13 +47,13 @@ impl GaussLegendre {
         Self { nodes }
     }
 
-    /// Nodes on [-1, 1], ascending, each with its weight; the weights sum to 2.
+    /// Returns the nodes on [-1, 1] in ascending order, each with its weight; the weights sum to 2.
     #[must_use]
     pub fn nodes(&self) -> &[[f64; 2]] {
         &self.nodes
     }
 
-    /// Nodes and weights carried to [a, b].
+    /// Returns the nodes and weights of the rule transformed to the interval [a, b].
     pub fn on(&self, a: f64, b: f64) -> impl Iterator<Item = [f64; 2]> + '_ {
         let (centre, half) = (0.5 * (a + b), 0.5 * (b - a));
         self.nodes
@@ -62,7 +62,7 @@ impl GaussLegendre {
     }
 }
 
-/// The Legendre polynomial of degree `n` and its derivative at `x` in (-1, 1).
+/// Returns the Legendre polynomial of degree `n` and its derivative at `x` in (-1, 1).
 fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut previous, mut current) = (1.0, x);
     for k in 2..=n {

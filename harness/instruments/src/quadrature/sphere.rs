@@ -1,14 +1,14 @@
-//! Integrals over the sphere of directions in fibre coordinates.
+//! Integrals over the sphere of directions, in the coordinates of a fibre.
 
 use super::adaptive::{Integral, Tolerance, bell_breakpoints, integrate_rectangle};
 use crate::direction::fibre_direction;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec3;
 
-/// Integrator over all directions, `d omega = cos theta dtheta dphi`.
+/// Integrator over all directions, with the measure `d omega = cos theta dtheta dphi`.
 ///
-/// Announce each lobe by `theta_lobe` and `phi_lobe`, or each edge by a plain breakpoint: then widths down to 0.01 rad
-/// and far below are resolved to the tolerance. The poles are never evaluated.
+/// Announce each lobe by `theta_lobe` and `phi_lobe`, or each edge by a plain breakpoint. Widths down to 0.01 rad and far below are
+/// then resolved to the tolerance. The poles are never evaluated.
 ///
 /// # Examples
 /// ```
@@ -31,7 +31,7 @@ impl Default for SphereIntegrator {
 }
 
 impl SphereIntegrator {
-    /// An integrator of relative error 1e-8 without breakpoints.
+    /// Makes an integrator with a relative tolerance of 1e-8 and without breakpoints of lobes.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -41,14 +41,14 @@ impl SphereIntegrator {
         }
     }
 
-    /// Sets the tolerance.
+    /// Sets the tolerance of the integrals.
     #[must_use]
     pub fn with_tolerance(mut self, tolerance: Tolerance) -> Self {
         self.tolerance = tolerance;
         self
     }
 
-    /// Adds a breakpoint in `theta`, in rad; one outside (-pi/2, pi/2) is dropped.
+    /// Adds a breakpoint in `theta`, in rad; a breakpoint outside (-pi/2, pi/2) is dropped.
     #[must_use]
     pub fn theta_break(mut self, theta: f64) -> Self {
         if theta.abs() < FRAC_PI_2 {
@@ -57,7 +57,7 @@ impl SphereIntegrator {
         self
     }
 
-    /// Adds a breakpoint in `phi`, in rad, wrapped to [-pi, pi]; one that is not finite is dropped.
+    /// Adds a breakpoint in `phi`, in rad, wrapped to [-pi, pi]; a breakpoint that is not finite is dropped.
     #[must_use]
     pub fn phi_break(mut self, phi: f64) -> Self {
         if phi.is_finite() {
@@ -66,9 +66,9 @@ impl SphereIntegrator {
         self
     }
 
-    /// Adds the breakpoints of a bell in `theta`: its centre, and 3 and 12 widths either side. In rad.
+    /// Adds the breakpoints of a bell in `theta`: its centre, and 3 and 12 widths to either side, in rad.
     ///
-    /// A bell of width `beta` in `theta_h = (theta_i + theta_o)/2` has width `2 beta` in `theta_i`, about `2 alpha - theta_o`.
+    /// A bell of width `beta` in `theta_h = (theta_i + theta_o)/2` has the width `2 beta` in `theta_i`, about `2 alpha - theta_o`.
     #[must_use]
     pub fn theta_lobe(self, centre: f64, width: f64) -> Self {
         bell_breakpoints(0.0, width)
@@ -76,17 +76,17 @@ impl SphereIntegrator {
             .fold(self, |q, d| q.theta_break(centre + d))
     }
 
-    /// Adds the breakpoints of a bell in `phi`: its centre, and 3 and 12 widths either side, wrapped. In rad.
+    /// Adds the breakpoints of a bell in `phi`: its centre, and 3 and 12 widths to either side, in rad and wrapped.
     #[must_use]
     pub fn phi_lobe(self, centre: f64, width: f64) -> Self {
-        // Beyond half a turn the wrapped tails would only shred the circle.
+        // Beyond half a turn, the wrapped tails would only cut the circle into more panels.
         bell_breakpoints(0.0, width)
             .into_iter()
             .filter(|d| d.abs() < PI)
             .fold(self, |q, d| q.phi_break(centre + d))
     }
 
-    /// Integral of `f(theta, phi)` over the sphere. The cosine of the measure is applied here; `f` is per steradian.
+    /// Integrates `f(theta, phi)`, a function per steradian, over the sphere. The cosine of the measure is applied here.
     pub fn integrate<const N: usize>(
         &self,
         mut f: impl FnMut(f64, f64) -> [f64; N],
@@ -95,7 +95,7 @@ impl SphereIntegrator {
         integrate_rectangle(integrand, &self.theta, &self.phi, &self.tolerance)
     }
 
-    /// Integral of a function of direction over the sphere.
+    /// Integrates a function of direction, per steradian, over the sphere.
     pub fn integrate_direction<const N: usize>(
         &self,
         mut f: impl FnMut(DVec3) -> [f64; N],

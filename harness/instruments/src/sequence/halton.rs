@@ -1,20 +1,21 @@
-//! The Halton sequence, scrambled so that independent randomisations give honest error bars.
+//! Halton sequence, scrambled so that independent randomisations yield honest error bars.
 
 use super::{XiSource, below, mix, unit_f64};
 
-/// The prime bases of the dimensions, in order.
+/// Prime bases of the dimensions, in the order of the dimensions.
 pub const HALTON_BASES: [u32; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
 
-/// Scrambled Halton points: dimension `d` is the radical inverse in the `d`-th prime, each digit permuted at random.
+/// Source of scrambled Halton points: dimension `d` is the radical inverse in the `d`-th prime, with each digit permuted at random.
 ///
-/// The scrambling is Owen's nested one with affine permutations, `digit -> (a digit + c) mod base` with `a` in 1..base and `c` in 0..base drawn by a hash of
-/// the run, the dimension and all earlier digits. For a prime base this maps two distinct digits to a uniform pair of distinct digits, as a full random
-/// permutation does, and variance depends on pairs only. Each point is uniform on its own, so estimates are unbiased; the elementary intervals stay
-/// equidistributed; and streams are independent randomisations, so the spread of their means is the error. Preferred to a Cranley-Patterson rotation,
-/// which keeps the correlated stripes of the larger bases at the 16 to 64 samples of direct lighting.
+/// The scrambling is Owen's nested scrambling with affine permutations, `digit -> (a digit + c) mod base`. A hash of the run, the
+/// dimension and all earlier digits draws `a` in 1..base and `c` in 0..base. For a prime base this maps two distinct digits to a
+/// uniform pair of distinct digits, as a full random permutation does, and variance depends on pairs only. Each point is uniform on its
+/// own, so estimates are unbiased, and the elementary intervals stay equidistributed. Streams are independent randomisations, so the
+/// spread of their means is the error. A Cranley-Patterson rotation was not chosen, because it keeps the correlated stripes of the
+/// larger bases at the 16 to 64 samples of direct lighting.
 ///
 /// - Source: Owen 1995; Matousek 1998, On the L2-discrepancy for anchored boxes.
-/// - Shape: at most `dims` coordinates a point.
+/// - Shape: at most `dims` coordinates per point.
 ///
 /// # Examples
 /// ```
@@ -31,10 +32,10 @@ pub struct Halton {
 }
 
 impl Halton {
-    /// The randomisation `(seed, stream)` in `dims` dimensions, from its first point.
+    /// Makes the randomisation `(seed, stream)` in `dims` dimensions, which begins with its first point.
     ///
     /// # Panics
-    /// When `dims` exceeds the number of [`HALTON_BASES`].
+    /// Panics if `dims` exceeds the number of [`HALTON_BASES`].
     #[must_use]
     pub fn new(dims: usize, seed: u64, stream: u64) -> Self {
         assert!(
@@ -49,10 +50,10 @@ impl Halton {
         }
     }
 
-    /// Coordinate `dim` of the point at `index`, in [0, 1).
+    /// Returns coordinate `dim` of the point at `index`, in [0, 1).
     ///
     /// # Panics
-    /// When `dim` is not below the number of [`HALTON_BASES`].
+    /// Panics if `dim` is not below the number of [`HALTON_BASES`].
     #[must_use]
     pub fn coordinate(&self, dim: usize, index: u64) -> f64 {
         let base = HALTON_BASES[dim];
@@ -61,7 +62,7 @@ impl Halton {
         let mut rest = index;
         let mut value = 0.0;
         let mut scale = 1.0;
-        // Digits down to 2^-32 keep the nesting; below that the point is placed at random, by a hash of its whole index.
+        // Digits down to 2^-32 keep the nesting; below that, a hash of the whole index places the point at random.
         while scale > 1.0 / 4_294_967_296.0 {
             let digit = rest % b;
             rest /= b;
@@ -158,7 +159,7 @@ mod tests {
 
     #[test]
     fn star_discrepancy_beats_random() {
-        // On the anchored boxes of a 32 x 32 grid: random points of n = 1024 sit near 0.03, Halton near 0.004.
+        // Measured on the anchored boxes of a 32 x 32 grid: for n = 1024, random points are near 0.03, Halton points near 0.004.
         let mut worst = Moments::new();
         for stream in 0..10 {
             let mut halton = Halton::new(2, 5, stream);

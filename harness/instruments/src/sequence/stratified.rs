@@ -1,12 +1,13 @@
-//! Jittered stratification of the unit cube, in shuffled order.
+//! Jittered stratification of the unit cube, with cells in shuffled order.
 
 use super::{Independent, XiSource};
 
-/// Cells along each of `dims` axes such that they multiply to exactly `samples` and the cells are as near to cubes as the divisors allow.
+/// Returns the numbers of cells along each of `dims` axes, whose product is exactly `samples`. The cells are as near to cubes as the
+/// divisors allow.
 ///
-/// The prime factors are dealt out, largest first, each to the axis with the fewest cells; a prime number of samples gives strips.
+/// The prime factors are dealt out, largest first, each to the axis with the fewest cells. A prime number of samples yields strips.
 ///
-/// - Shape: `dims` elements, descending; a single 1 an axis when `samples` is 0.
+/// - Shape: `dims` elements, descending; 1 for each axis if `samples` is 0.
 #[must_use]
 pub fn strata(samples: usize, dims: usize) -> Vec<usize> {
     let (mut counts, mut factors) = (vec![1; dims], Vec::new());
@@ -28,12 +29,12 @@ pub fn strata(samples: usize, dims: usize) -> Vec<usize> {
     counts
 }
 
-/// Jittered points, one in each cell of a grid, in random order; after the last cell a new randomisation begins.
+/// Source of jittered points, one in each cell of a grid, in random order. After the last cell a new randomisation begins.
 ///
-/// Each pass over the grid is one independent randomisation, so the spread of their means is the error. The order is shuffled so that two sources side by
-/// side (light and scattering samples) do not pair their cells.
+/// Each pass over the grid is an independent randomisation, so the spread of the passes' means is the error. The order is shuffled so
+/// that two sources side by side (light and scattering samples) do not pair their cells.
 ///
-/// - Shape: as many coordinates a point as the grid has axes, or fewer.
+/// - Shape: as many coordinates per point as the grid has axes, or fewer.
 ///
 /// # Examples
 /// ```
@@ -51,7 +52,8 @@ pub struct Stratified {
 }
 
 impl Stratified {
-    /// A grid with `counts` cells along each axis, the randomisations drawn from `(seed, stream)`. A count of 0 is taken as 1.
+    /// Makes a grid with `counts` cells along each axis, whose randomisations are drawn from `(seed, stream)`. A count of 0 is taken as
+    /// 1.
     #[must_use]
     pub fn new(counts: &[usize], seed: u64, stream: u64) -> Self {
         let counts: Vec<usize> = counts.iter().map(|&c| c.max(1)).collect();
@@ -64,7 +66,7 @@ impl Stratified {
         }
     }
 
-    /// Points in one randomisation.
+    /// Returns the number of cells, which is the number of points in one randomisation.
     #[must_use]
     pub fn cells(&self) -> usize {
         self.order.len()

@@ -1,24 +1,24 @@
-//! Running central moments: mean, variance, relative variance, each with a standard error.
+//! Running central moments, and the figures computed from them with their standard errors.
 
 use serde::Serialize;
 
-/// A figure and its standard error, in the unit of the figure.
+/// Figure with its standard error, both in the unit of the figure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Estimate {
-    /// The figure.
+    /// Value of the figure.
     pub value: f64,
-    /// Its standard error; NaN for too few samples.
+    /// Standard error of the figure; NaN for too few samples.
     pub standard_error: f64,
 }
 
 impl Estimate {
-    /// A figure that is not known.
+    /// Estimate of a figure that is not known: both numbers are NaN.
     pub const UNKNOWN: Self = Self {
         value: f64::NAN,
         standard_error: f64::NAN,
     };
 
-    /// A figure without error.
+    /// Returns the estimate of a figure that is known exactly, with an error of 0.
     #[must_use]
     pub const fn exact(value: f64) -> Self {
         Self {
@@ -27,10 +27,10 @@ impl Estimate {
         }
     }
 
-    /// Distance to `truth` in standard errors.
+    /// Returns the signed distance from `truth` in standard errors.
     ///
     /// - Units: dimensionless.
-    /// - Domain: 0 when the estimate is exactly `truth`, whatever its error; infinite when it differs with an error of 0.
+    /// - Domain: 0 if the estimate is exactly `truth`, whatever its error; infinite if it differs and the error is 0.
     #[must_use]
     pub fn z_score(&self, truth: f64) -> f64 {
         let d = self.value - truth;
@@ -41,21 +41,21 @@ impl Estimate {
         }
     }
 
-    /// Quotient of two independent estimates, with its first-order standard error.
+    /// Returns the quotient of two independent estimates, with its first-order standard error.
     ///
-    /// The squares of the relative errors add; good while the divisor's relative error stays below about 0.1.
+    /// The squares of the relative errors add, which is accurate while the divisor's relative error stays below about 0.1.
     #[must_use]
     pub fn ratio(&self, divisor: &Self) -> Self {
         self.combined(divisor, self.value / divisor.value)
     }
 
-    /// Product of two independent estimates, with its first-order standard error; NaN where one of them is 0.
+    /// Returns the product of two independent estimates, with its first-order standard error. The error is NaN if one of them is 0.
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
         self.combined(other, self.value * other.value)
     }
 
-    /// A product or quotient of both: the squares of the relative errors add.
+    /// Returns the estimate of a product or quotient `value`, for which the squares of the relative errors add.
     fn combined(&self, other: &Self, value: f64) -> Self {
         let relative = (self.standard_error / self.value).hypot(other.standard_error / other.value);
         Self {
@@ -64,7 +64,7 @@ impl Estimate {
         }
     }
 
-    /// Estimate times an exact number.
+    /// Returns the estimate multiplied by an exact number, with its error scaled alike.
     #[must_use]
     pub fn scale(&self, factor: f64) -> Self {
         Self {
@@ -73,7 +73,7 @@ impl Estimate {
         }
     }
 
-    /// Effective samples in 1000, `1000 / (1 + V)`, of samples of this relative variance V.
+    /// Returns the number of effective samples in 1000, `1000 / (1 + V)`, for this estimate of the relative variance V.
     #[must_use]
     pub fn effective_per_1000(&self) -> Self {
         let value = 1e3 / (1.0 + self.value);
@@ -83,7 +83,7 @@ impl Estimate {
         }
     }
 
-    /// Geometric mean of independent estimates of positive figures; NaN without estimates.
+    /// Returns the geometric mean of independent estimates of positive figures, or NaN without estimates.
     #[must_use]
     pub fn geometric_mean(estimates: &[Self]) -> Self {
         let n = estimates.len() as f64;
@@ -99,9 +99,9 @@ impl Estimate {
     }
 }
 
-/// Running count, mean and central moment sums up to the fourth.
+/// Running count and mean of samples, with their central moment sums up to the fourth.
 ///
-/// `push` is Welford's update, carried to fourth order.
+/// `push` is Welford's update, extended to fourth order.
 ///
 /// - Source: Pebay 2008, Formulas for robust, one-pass parallel computation of covariances and arbitrary-order statistical moments.
 ///
@@ -122,13 +122,13 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// Moments of no samples.
+    /// Makes the moments of an empty set of samples.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds one sample. A NaN or an infinity makes every later figure NaN: it is never dropped.
+    /// Adds a sample. A NaN or an infinity is never dropped, so it makes every later figure NaN.
     #[inline]
     pub fn push(&mut self, x: f64) {
         let n1 = self.count as f64;
@@ -146,19 +146,19 @@ impl Moments {
         self.sum_sq += term;
     }
 
-    /// Number of samples.
+    /// Returns the number of samples that were added.
     #[must_use]
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// Sample mean; 0 without samples.
+    /// Returns the mean of the samples, or 0 without samples.
     #[must_use]
     pub fn mean(&self) -> f64 {
         self.mean
     }
 
-    /// Unbiased sample variance (divisor n - 1), in the unit of the samples squared; NaN below two samples.
+    /// Returns the unbiased sample variance (divisor n - 1), in the unit of the samples squared, or NaN for fewer than two samples.
     #[must_use]
     pub fn variance(&self) -> f64 {
         if self.count < 2 {
@@ -167,14 +167,14 @@ impl Moments {
         self.sum_sq / (self.count - 1) as f64
     }
 
-    /// Third and fourth central moments (divisor n), in the unit of the samples to the third and fourth power.
+    /// Returns the third and fourth central moments (divisor n), in the unit of the samples to the third and fourth power.
     #[must_use]
     pub fn higher_moments(&self) -> [f64; 2] {
         let n = self.count as f64;
         [self.sum_cube / n, self.sum_fourth / n]
     }
 
-    /// Mean with its standard error `sqrt(variance / n)`.
+    /// Returns the mean of the samples with its standard error `sqrt(variance / n)`.
     #[must_use]
     pub fn mean_estimate(&self) -> Estimate {
         Estimate {
@@ -183,15 +183,16 @@ impl Moments {
         }
     }
 
-    /// Relative variance `V = variance / mean^2` of one sample, with its standard error by the delta method.
+    /// Returns the relative variance `V = variance / mean^2` of one sample, with its standard error by the delta method.
     ///
-    /// `n var(V) = (m4 - s^4)/mean^4 - 4 s^2 m3/mean^5 + 4 s^6/mean^6`, from `n var(s^2) = m4 - s^4`, `n cov(mean, s^2) = m3`, `n var(mean) = s^2`.
+    /// `n var(V) = (m4 - s^4)/mean^4 - 4 s^2 m3/mean^5 + 4 s^6/mean^6`, from `n var(s^2) = m4 - s^4`, `n cov(mean, s^2) = m3` and
+    /// `n var(mean) = s^2`.
     ///
-    /// First order in 1/n: with a heavy right tail (largest weight far above those seen) the error is itself underestimated, so compare figures only from
-    /// estimators whose weights are bounded, or at sizes where two halves of the run agree.
+    /// The error is of first order in 1/n. With a heavy right tail (largest weight far above the samples so far) the error itself is
+    /// underestimated. Compare figures only from estimators whose weights are bounded, or at sizes where two halves of the run agree.
     ///
     /// - Units: dimensionless.
-    /// - Domain: NaN below two samples, and when the mean is 0.
+    /// - Domain: NaN for fewer than two samples, and if the mean is 0.
     #[must_use]
     pub fn relative_variance(&self) -> Estimate {
         let s2 = self.variance();
@@ -201,7 +202,7 @@ impl Moments {
         }
         let [m3, m4] = self.higher_moments();
         let v = s2 / (m * m);
-        // Each term is written in units of the mean so that tiny radiances do not underflow.
+        // Each term is written in units of the mean, so that tiny radiances do not underflow.
         let skew = m3 / m / (m * m);
         let kurt = m4 / (m * m) / (m * m);
         let n_var = kurt - v * v - 4.0 * v * skew + 4.0 * v * v * v;

@@ -1,6 +1,7 @@
-//! Order statistics of timing samples: timings have a long right tail, so the median and the quartiles describe them, not the mean.
+//! Order statistics of timing samples, which have a long right tail, so that the median and the quartiles describe them better than the
+//! mean.
 
-/// Value below which a fraction `p` of `sorted` lies, by linear interpolation between order statistics.
+/// Returns the value below which a fraction `p` of `sorted` lies, by linear interpolation between order statistics.
 ///
 /// `h = p (n - 1)`; type 7 of Hyndman and Fan 1996, the default of R and `NumPy`.
 ///
@@ -20,7 +21,7 @@ pub fn percentile(sorted: &[f64], p: f64) -> f64 {
     )]
     let lo = h as usize;
     let (t, hi) = (h.fract(), (lo + 1).min(last));
-    // Equal neighbours must give themselves, also when they are infinite.
+    // The interpolation between equal neighbours must be exact, also if they are infinite.
     if t == 0.0 || sorted[lo] == sorted[hi] {
         sorted[lo]
     } else {

@@ -1,9 +1,9 @@
-//! Numbers as people read them, formatted in this one place for the terminal, the report and the plots.
+//! Numbers as people read them, formatted in this single module for the terminal, the report and the plots.
 
 use crate::stats::Estimate;
 
-/// `value` with as many digits as its standard error deserves: two of the error, or one if it is 4 to 9, and no more
-/// than six of the value.
+/// Formats `value` with as many digits as its standard error deserves. The error has two digits, or one digit if its leading digit is 4
+/// to 9; the value has at most six.
 ///
 /// ```
 /// use hairis_instruments::table::number::with_error;
@@ -19,7 +19,7 @@ pub fn with_error(value: f64, error: f64) -> String {
     let (unit, power) = unit(size, 6);
     let places = error_places(error / unit);
     if places > self::places(size / unit, 6) {
-        // The error is below the last digit shown.
+        // The error is below the last digit of the value that is shown.
         return plain(value, 6);
     }
     let text = minus(&format!(
@@ -34,13 +34,13 @@ pub fn with_error(value: f64, error: f64) -> String {
     }
 }
 
-/// [`with_error`] of an estimate.
+/// Formats an estimate as [`with_error`] does.
 #[must_use]
 pub fn estimate(of: &Estimate) -> String {
     with_error(of.value, of.standard_error)
 }
 
-/// `value` to `digits` significant digits; powers of ten outside of 10^-4 .. 10^6.
+/// Formats `value` with `digits` significant digits, and with a power of ten outside 10^-4 .. 10^6.
 #[must_use]
 pub fn plain(value: f64, digits: usize) -> String {
     match value {
@@ -55,13 +55,13 @@ pub fn plain(value: f64, digits: usize) -> String {
     }
 }
 
-/// A ratio: `13.4×`.
+/// Formats a ratio with three significant digits: `13.4×`.
 #[must_use]
 pub fn ratio(value: f64) -> String {
     format!("{}×", plain(value, 3))
 }
 
-/// A ratio with its standard error: `13.4× ± 0.2`.
+/// Formats a ratio with its standard error: `13.4× ± 0.2`.
 #[must_use]
 pub fn ratio_with_error(value: f64, error: f64) -> String {
     let text = with_error(value, error);
@@ -71,20 +71,20 @@ pub fn ratio_with_error(value: f64, error: f64) -> String {
     }
 }
 
-/// A share as a percentage to three digits.
+/// Formats a share as a percentage with three significant digits.
 #[must_use]
 pub fn percent(share: f64) -> String {
     format!("{} %", plain(share * 100.0, 3))
 }
 
-/// A label of a linear axis whose labels are `step` apart.
+/// Formats a label of a linear axis whose labels are `step` apart.
 pub(crate) fn tick(value: f64, step: f64) -> String {
     let (unit, power) = unit(value, 17);
     let places = places(step / unit, 1).min(9);
     minus(&format!("{:.places$}{power}", value / unit))
 }
 
-/// A label of a logarithmic axis: `digit` times ten to the `exponent`.
+/// Formats a label of a logarithmic axis: `digit` times ten to the `exponent`.
 pub(crate) fn power(digit: i32, exponent: f64) -> String {
     if (-3.0..=3.0).contains(&exponent) {
         return plain(f64::from(digit) * 10.0_f64.powf(exponent), 1);
@@ -97,13 +97,13 @@ pub(crate) fn power(digit: i32, exponent: f64) -> String {
     }
 }
 
-/// Decimal places that a standard error deserves: rounding to one digit is too coarse for 1 to 3.
+/// Returns the number of decimal places that a standard error deserves, because rounding to one digit is too coarse for 1 to 3.
 fn error_places(error: f64) -> usize {
     let lead = error / 10.0_f64.powf(error.log10().floor());
     places(error, if lead < 3.55 { 2 } else { 1 })
 }
 
-/// Decimal places that show `digits` significant digits of `value`.
+/// Returns the number of decimal places that show `digits` significant digits of `value`.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -127,7 +127,7 @@ fn minus(text: &str) -> String {
     text.replace('-', "−")
 }
 
-/// Unit in which a number is written to `digits` digits: 1, or a power of ten outside of 10^-4 .. 10^6, with its text.
+/// Returns the unit in which a number is written to `digits` digits, with its text: 1, or a power of ten outside 10^-4 .. 10^6.
 fn unit(value: f64, digits: usize) -> (f64, String) {
     let size = value.abs();
     if size == 0.0 || (1e-4..1e6).contains(&size) {
@@ -142,7 +142,7 @@ fn unit(value: f64, digits: usize) -> (f64, String) {
     )
 }
 
-/// A power of ten as it is written.
+/// Formats a power of ten with raised digits.
 fn power_of_ten(exponent: f64) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',

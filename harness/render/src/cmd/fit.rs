@@ -1,4 +1,4 @@
-//! `hairis-render fit`.
+//! Subcommand `hairis-render fit`, which recovers the material of hair from a picture.
 
 use super::place::{Ground, choices};
 use crate::args::Fit as Flags;
@@ -23,18 +23,18 @@ use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 
-/// Samples of a pixel of the pictures before and after.
+/// Samples per pixel of the pictures before and after the fit.
 const SAMPLES: u32 = 64;
-/// Pixels between pictures side by side.
+/// Width of the gap between pictures side by side, in pixels.
 const GAP: u32 = 4;
-/// Share of a number above which its standard error means that the picture does not tell it.
+/// Relative standard error above which the table says that the picture hardly determines a number.
 const UNKNOWN: f64 = 0.1;
 
 /// Recovers the material of hair from a picture.
 ///
 /// # Errors
 ///
-/// If a flag is out of its range, or a file cannot be read or written; before any work is done.
+/// Returns an error if a flag is out of its range, or a file cannot be read or written. Both are checked before any work is done.
 pub(super) fn run(flags: &Flags) -> Result<(), Error> {
     flags.check()?;
     let start = start(flags)?;
@@ -91,7 +91,7 @@ pub(super) fn run(flags: &Flags) -> Result<(), Error> {
     print(format!("{text}wrote {}\n", material.display()))
 }
 
-/// The material that the flags begin with.
+/// Returns the material that the fit starts from.
 fn start(flags: &Flags) -> Result<Choice, Error> {
     let mut all = choices(&flags.looks, &flags.place)?;
     let start = all.swap_remove(0);
@@ -129,7 +129,7 @@ fn start(flags: &Flags) -> Result<Choice, Error> {
     Ok(start)
 }
 
-/// Warns of light in the target that the fit does not follow.
+/// Warns if the target was rendered with light that the fit does not follow.
 fn warn(target: &Target, settings: &FitSettings) {
     let expected = [
         "integrator=Path".to_owned(),
@@ -146,7 +146,7 @@ fn warn(target: &Target, settings: &FitSettings) {
     }
 }
 
-/// The picture of a material.
+/// Renders the part of the picture that the target covers, with the hair of a material.
 fn render(
     scene: &Scene,
     hair: &Choice,
@@ -169,7 +169,7 @@ fn render(
     Ok(film.picture())
 }
 
-/// Writes pictures side by side.
+/// Writes pictures side by side into one PNG file.
 fn write_pictures(pictures: &[Picture], exposure: f64, path: &Path) -> Result<(), Error> {
     let [width, height] = pictures[0].size;
     let step = width + GAP;
@@ -186,7 +186,7 @@ fn write_pictures(pictures: &[Picture], exposure: f64, path: &Path) -> Result<()
     whole(path, |out| out.write_all(&picture::png(&sheet)?))
 }
 
-/// Numbers and error of the picture by iteration.
+/// Returns the numbers and the error of the picture by iteration, as columns of a CSV file.
 fn columns(fit: &Fit) -> Columns {
     let mut columns = Columns::default()
         .whole("iteration", 0..fit.history.len())
@@ -197,7 +197,7 @@ fn columns(fit: &Fit) -> Columns {
     columns
 }
 
-/// Numbers by iteration, relative to those that were found; a colour per field.
+/// Draws the numbers by iteration, relative to the values that were found, with one colour per field.
 fn drawing(fit: &Fit) -> String {
     let mut fields: Vec<&str> = Vec::new();
     let mut series = Vec::new();
@@ -224,7 +224,7 @@ fn drawing(fit: &Fit) -> String {
     )
 }
 
-/// Numbers before and after, with standard errors.
+/// Returns the table of the numbers before and after the fit, with standard errors.
 fn table(fit: &Fit) -> Table {
     let mut table = Table::new("Fitted parameters")
         .texts(["parameter"])

@@ -1,4 +1,4 @@
-//! `hairis-render merge`.
+//! Subcommand `hairis-render merge`, which joins the parts that shards have left.
 
 use super::render::{check_out, finish};
 use crate::args::Merge;
@@ -7,11 +7,11 @@ use crate::part::Part;
 use hairis_instruments::error::Error;
 use hairis_instruments::program::print;
 
-/// Joins the parts of a picture.
+/// Joins the parts of a picture, and writes the picture with its preview.
 ///
 /// # Errors
 ///
-/// If a part cannot be read, is missing, or belongs to another run; or the file cannot be written.
+/// Returns an error if a part cannot be read, is missing or belongs to another run, or if the file cannot be written.
 pub(super) fn run(flags: &Merge) -> Result<(), Error> {
     check_out(&flags.out)?;
     let parts = flags

@@ -1,4 +1,4 @@
-//! Scene of the flags: hair, head, light and camera.
+//! Scene that the flags describe: hair, head, light and camera.
 
 use crate::args::{Looks, Place};
 use crate::formats::{self, Follow, Import, Imported, import, import_head};
@@ -15,10 +15,10 @@ use hairis_instruments::program::say;
 use hairis_materials::files;
 use std::path::Path;
 
-/// The model of presets where none is asked for.
+/// Model of presets if the flags name none.
 const MODEL: &str = "gaussian";
 
-/// Hair, head and map of a scene.
+/// Hair, head and environment map of a scene.
 pub(super) struct Ground {
     pub(super) strands: Strands,
     head: Option<Head>,
@@ -28,11 +28,11 @@ pub(super) struct Ground {
 }
 
 impl Ground {
-    /// Reads the files of a scene, or grows its hair, for a picture of so many pixels.
+    /// Reads the files of a scene, or grows its hair if no file is given, for a picture of `pixels` pixels.
     ///
     /// # Errors
     ///
-    /// If a file cannot be read, or there is not enough memory.
+    /// Returns an error if a file cannot be read, or if there is not enough memory.
     pub(super) fn read(flags: &Place, pixels: usize) -> Result<Self, Error> {
         let pixels = pixels as u64;
         let read = |path| environment(path, flags.layer.as_deref());
@@ -61,11 +61,11 @@ impl Ground {
         })
     }
 
-    /// The scene with this hair, for a picture of this size.
+    /// Returns the scene with this hair, for a picture of `size` pixels.
     ///
     /// # Errors
     ///
-    /// If the strands are too thin for their extent.
+    /// Returns an error if the strands are too thin for their extent.
     pub(super) fn scene(self, flags: &Place, hair: Hair, size: [u32; 2]) -> Result<Scene, Error> {
         let parts = Parts {
             strands: self.strands,
@@ -86,11 +86,11 @@ impl Ground {
     }
 }
 
-/// The materials that the flags ask for, at least one.
+/// Returns the materials that the flags select, at least one.
 ///
 /// # Errors
 ///
-/// If a file cannot be read, or a name or a value is refused.
+/// Returns an error if a file cannot be read, or if a name or a value is rejected.
 pub(super) fn choices(flags: &Looks, place: &Place) -> Result<Vec<Choice>, Error> {
     let mut choices = Vec::new();
     if flags.material.is_empty() {
@@ -113,7 +113,7 @@ pub(super) fn choices(flags: &Looks, place: &Place) -> Result<Vec<Choice>, Error
         .collect()
 }
 
-/// Reads an environment map, and remarks on what is odd about it.
+/// Reads an environment map, and logs what is odd about it.
 pub(crate) fn environment(path: &Path, layer: Option<&str>) -> Result<Environment, Error> {
     let map = Environment::load_layer(path, layer).map_err(Error::Environment)?;
     for note in map.notes() {
@@ -122,7 +122,7 @@ pub(crate) fn environment(path: &Path, layer: Option<&str>) -> Result<Environmen
     Ok(map)
 }
 
-/// Reads hair with the digest of its file, and remarks on what is odd about it.
+/// Reads hair with the digest of its file, and logs what is odd about it.
 fn read_hair(flags: &Place, path: &Path) -> Result<(Imported, u64), Error> {
     let follow = Follow {
         strands: flags.follow,
@@ -149,7 +149,7 @@ fn read_hair(flags: &Place, path: &Path) -> Result<(Imported, u64), Error> {
     Ok((imported, digest))
 }
 
-/// The head under hair from a file of this scale, if flags ask for one, with the digest of its file.
+/// Returns the head under hair from a file of this scale, if the flags select one, with the digest of its file.
 fn read_head(flags: &Place, strands: &Strands, scale: f32) -> Result<(Option<Head>, u64), Error> {
     if flags.scalp.is_some() {
         let fit = scalp::fit(strands).map_err(Error::Usage)?;

@@ -1,4 +1,4 @@
-//! `hairis-render render`.
+//! Subcommand `hairis-render render`, which renders a scene into an EXR file and a PNG preview.
 
 mod description;
 
@@ -28,16 +28,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Bounds of the time between two previews, which is half of the time since the start.
+/// Shortest and longest time between two previews, which otherwise is half of the time since the start.
 const PREVIEW: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)];
-/// Least time between previews, in times of the last preview.
+/// Least time between previews, as a multiple of the time that the last preview took.
 const PREVIEW_SHARE: u32 = 10;
 
-/// Renders a scene, with each hair that is asked for.
+/// Renders a scene, once for each hair that the flags select.
 ///
 /// # Errors
 ///
-/// If a flag is out of its range, or a file cannot be read or written; before anything is rendered.
+/// Returns an error if a flag is out of its range, or a file cannot be read or written. Both are checked before anything is rendered.
 pub(super) fn run(flags: &Render) -> Result<(), Error> {
     flags.check()?;
     let crop = flags.part()?;
@@ -75,7 +75,7 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     Ok(())
 }
 
-/// Renders a picture of a scene, which `run` describes, and writes it.
+/// Renders a picture of a scene and writes it. `run` is the line that describes everything the sums depend on.
 fn picture(
     flags: &Render,
     scene: &Scene,
@@ -104,7 +104,7 @@ fn picture(
     let most = flags.time.is_none().then_some(samples);
     let (mut part, log) = Part::resume(&part_path, fresh, most)?;
     let mut saver = Saver::new(log, interrupt);
-    // The file is there, and this run's, from the beginning.
+    // Save first, so that the file exists and belongs to this run from the beginning.
     saver.save(&part)?;
     saver.work(&mut part, |film, stop| {
         layers::look(scene, film, stop);
@@ -137,13 +137,13 @@ fn picture(
         out,
         flags.exposure,
     )?;
-    // A larger --spp goes on from it. Marked before anything is printed, because printing may fail.
+    // A run with a larger --spp continues this part. It is marked before anything is printed, because printing may fail.
     part.finished = true;
     log.write(&part)?;
     print(format!("{profile}{wrote}"))
 }
 
-/// Writes a picture that is whole, and returns the line that says so.
+/// Writes a finished picture, and returns the line that reports it.
 pub(super) fn finish(
     film: &Film,
     beside: &Beside,
@@ -165,16 +165,16 @@ pub(super) fn finish(
     ))
 }
 
-/// Hair of a picture.
+/// Hair of a picture, with its name and its description.
 struct Named {
     hair: Hair,
-    /// Its name: of several pictures each file has that of its hair.
+    /// Name of the hair, which is part of the name of the file if there are several pictures.
     name: String,
-    /// Everything that its scattering depends on.
+    /// Description of everything that the scattering of the hair depends on.
     line: String,
 }
 
-/// The hair that the flags ask for: a picture each, at least one.
+/// Returns the hair that the flags select, at least one; each has a picture of its own.
 fn hairs(flags: &Render, settings: &Settings) -> Result<Vec<Named>, Error> {
     let is_chosen =
         flags.looks.hair.is_some() || flags.looks.model.is_some() || flags.looks.sampler.is_some();
@@ -198,7 +198,7 @@ fn hairs(flags: &Render, settings: &Settings) -> Result<Vec<Named>, Error> {
         say(&format!(
             "albedo of {whose}: mean {mean:.3}, largest {worst:.3}"
         ));
-        // Without --energy it is refused; with it, as long as its paths have an end.
+        // Reject hair whose paths do not converge, unless --energy is given and --depth ends the paths.
         let remedy = match flags.energy {
             None => "use --energy per-wo",
             Some(_) => "use --energy per-wo, or end paths by --depth",
@@ -219,12 +219,12 @@ fn hairs(flags: &Render, settings: &Settings) -> Result<Vec<Named>, Error> {
         .collect()
 }
 
-/// The files of the pictures: of several, each with the name of its hair.
+/// Returns the file of each picture. If there are several, each name contains the name of the hair.
 fn outs(out: &Path, hairs: &[Named]) -> Result<Vec<PathBuf>, Error> {
     if let [_] = hairs {
         return Ok(vec![out.to_owned()]);
     }
-    // What `check_out` refuses is refused by the name that was given.
+    // Reject here what `check_out` would reject, so that the message has the name that was given.
     let Some(stem) = out.file_stem().filter(|_| has_ending(out)) else {
         return Err(wrong_ending(out));
     };
@@ -236,7 +236,7 @@ fn outs(out: &Path, hairs: &[Named]) -> Result<Vec<PathBuf>, Error> {
     Ok(hairs.iter().map(named).collect())
 }
 
-/// Makes the folder of a file, and sees that files can be written there.
+/// Makes the folder of a file, and checks that files can be written into it.
 pub(super) fn check_out(path: &Path) -> Result<(), Error> {
     if !has_ending(path) {
         return Err(wrong_ending(path));
@@ -259,7 +259,7 @@ fn wrong_ending(path: &Path) -> Error {
     Error::Usage(format!("the picture must end in .exr, got {path}"))
 }
 
-/// Renders pass by pass, saving what there is; from time to time writes the picture so far, with
+/// Renders pass by pass and saves the sums; from time to time, also writes the picture so far with
 /// its preview.
 fn passes(
     flags: &Render,

@@ -1,4 +1,4 @@
-//! The figures of the page as a table for programs.
+//! Figures of the page as a CSV table for other programs.
 
 use super::measure::{Measured, Plan};
 use super::models::Preset;
@@ -19,23 +19,23 @@ use hairis_instruments::stats::Estimate;
 use serde::Serialize;
 use std::path::Path;
 
-/// Settings that the figures depend on: `figures.json`.
+/// Settings that the figures depend on, which are written as `figures.json`.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct FiguresSettings {
-    /// The command line, with the names of maps alone, and without folders.
+    /// Command line without folders: maps and materials appear by name alone.
     command: String,
     /// Width and height of pictures in pixels.
     side: u32,
-    /// Strands of hair.
+    /// Count of strands of hair.
     strands: usize,
-    /// Pictures for each error.
+    /// Count of pictures from which each error is estimated.
     pictures_per_error: u32,
     /// Meaning of the times.
     time: &'static str,
     machine: Machine,
 }
 
-/// The settings of a run, with the names of its maps.
+/// Returns the settings of a run, with the names of its maps.
 pub(super) fn settings(plan: &Plan, flags: &Figures, maps: &[String]) -> FiguresSettings {
     FiguresSettings {
         command: command(flags, maps),
@@ -47,7 +47,7 @@ pub(super) fn settings(plan: &Plan, flags: &Figures, maps: &[String]) -> Figures
     }
 }
 
-/// Writes `figures.csv`, and `figures.json` with what it depends on.
+/// Writes `figures.csv` with the figures, and `figures.json` with the settings they depend on.
 pub(super) fn write(
     all: &[Measured],
     presets: &[Preset],
@@ -86,14 +86,14 @@ struct Start {
     scene: String,
     light: String,
     hair: String,
-    /// The sampler, or the model.
+    /// Name of the sampler, or of the model.
     sampler: &'static str,
     protocol: &'static str,
-    /// Samples of a pixel, if the figure is of one count of them.
+    /// Samples per pixel, if the figure belongs to one count of samples.
     samples: Option<u32>,
 }
 
-/// A line of the table.
+/// Row of the table: one figure with its standard error.
 struct Row {
     start: Start,
     figure: String,
@@ -112,7 +112,7 @@ impl Start {
     }
 }
 
-/// The table.
+/// Returns the rows as columns of a CSV file.
 fn columns(rows: &[Row]) -> Columns {
     let text = |of: fn(&Start) -> String| rows.iter().map(move |row| of(&row.start));
     Columns::default()
@@ -141,7 +141,7 @@ fn columns(rows: &[Row]) -> Columns {
         )
 }
 
-/// The command line, with the names of maps alone, and without folders.
+/// Returns the command line without folders: maps and materials appear by name alone.
 fn command(flags: &Figures, maps: &[String]) -> String {
     let mut words = vec!["hairis-render figures".to_owned()];
     words.extend(flags.quick.then(|| "--quick".to_owned()));
@@ -169,7 +169,7 @@ fn command(flags: &Figures, maps: &[String]) -> String {
     words.join(" ")
 }
 
-/// A flag and its value.
+/// Returns a flag with its value, as the command line spells them.
 fn flag(name: &str, value: impl ValueEnum) -> Option<String> {
     value
         .to_possible_value()
@@ -247,7 +247,7 @@ fn figures(start: &Start, runs: &Runs, (name_of_best, best): (&str, &Runs), rows
     }
 }
 
-/// A number to five digits.
+/// Rounds a number to five significant digits.
 fn digits(value: f64) -> f64 {
     format!("{value:.4e}").parse().unwrap_or(value)
 }

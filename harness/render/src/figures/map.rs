@@ -3,12 +3,12 @@
 use hairis_instruments::table::number;
 use image::RgbImage;
 
-/// Ratio of the largest and the smallest squared error that a map tells apart.
+/// Decades of squared error that a map tells apart.
 const DECADES: f64 = 4.0;
-/// Share of the pixels that a scale covers.
+/// Share of the nonzero values that a scale covers.
 const COVERED: f64 = 0.995;
 
-/// Scale of a map and what it shows.
+/// Map of errors: its scale, and the text that explains it.
 pub(super) struct Map {
     pub(super) name: &'static str,
     pub(super) remarks: &'static [&'static str],
@@ -17,7 +17,7 @@ pub(super) struct Map {
 }
 
 impl Map {
-    /// Signed errors: blue below 0, red above, white at 0; full colours at `most`.
+    /// Creates a map of signed errors: blue below 0, red above, white at 0, with full colours at `most`.
     pub(super) fn signed(name: &'static str, most: f64, remarks: &'static [&'static str]) -> Self {
         Self {
             name,
@@ -27,7 +27,7 @@ impl Map {
         }
     }
 
-    /// Squared errors by their logarithm, yellow at `most`.
+    /// Creates a map of squared errors on a logarithmic scale, which is yellow at `most`.
     pub(super) fn squared(name: &'static str, most: f64, remarks: &'static [&'static str]) -> Self {
         Self {
             name,
@@ -37,7 +37,7 @@ impl Map {
         }
     }
 
-    /// Place of an error on the scale: from -1, or 0 for squares, to 1.
+    /// Returns the place of an error on the scale: from -1, or 0 for squares, to 1.
     fn place(&self, error: f64) -> f64 {
         if self.is_signed {
             (error / self.most).clamp(-1.0, 1.0)
@@ -79,14 +79,14 @@ impl Map {
         }))
     }
 
-    /// Errors as colours, row by row.
+    /// Draws errors as colours, row by row.
     pub(super) fn image(&self, errors: &[f64], [width, height]: [u32; 2]) -> RgbImage {
         RgbImage::from_fn(width, height, |x, y| {
             self.color(self.place(errors[(y * width + x) as usize]))
         })
     }
 
-    /// The colours from the lower end of the scale to the upper.
+    /// Draws the colours of the scale, from its lower end to its upper end.
     pub(super) fn legend(&self, width: u32) -> RgbImage {
         RgbImage::from_fn(width, 1, |x, _| {
             let share = f64::from(x) / f64::from(width.max(2) - 1);
@@ -98,7 +98,7 @@ impl Map {
         })
     }
 
-    /// Numbers below the legend: share of its width, anchor of the text, text.
+    /// Returns the numbers below the legend, each as share of its width, anchor of the text, and text.
     pub(super) fn ticks(&self) -> [(f64, &'static str, String); 3] {
         let most = self.most;
         let values = if self.is_signed {
@@ -115,7 +115,7 @@ impl Map {
     }
 }
 
-/// Upper end of a scale that covers all but a few of the values, those that are 0 apart: 1, 2 or 5 times a power of ten.
+/// Returns the upper end of a scale that covers all but a few of the nonzero values: 1, 2 or 5 times a power of ten.
 pub(super) fn scale<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
     let mut values: Vec<f64> = values
         .map(|value| value.abs())

@@ -1,4 +1,4 @@
-//! Measurements on a scene.
+//! Measurements of samplers on a scene: a reference, errors by count of samples, and pictures of equal time.
 
 use super::store::Store;
 use crate::film::{Crop, Picture};
@@ -17,22 +17,22 @@ use hairis_instruments::light::Environment;
 use hairis_instruments::machine;
 use std::path::Path;
 
-/// The model of the scenes' presets.
+/// Model of the scenes' presets.
 const MODEL: &str = "gaussian";
-/// Rays chosen from candidates, those of the hair drawn by its best sampler.
+/// Name of the sampler that chooses rays from candidates; the candidates of the hair are drawn by its best sampler.
 pub(super) const RESAMPLED: &str = "resampled";
-/// All samplers, in the order of the page.
+/// Names of all samplers, in the order of the page.
 pub(super) const SAMPLERS: [&str; 4] = [UNIFORM, PUBLISHED, RESAMPLED, MATCHED];
 
-/// The samplers of hair; the last is its best, which references are made with and others are
-/// compared with.
+/// Returns the samplers of hair. The last is the best: references are rendered with it, and the
+/// others are compared with it.
 fn samplers(hair: &Choice) -> Vec<&'static str> {
     let others = SAMPLERS.into_iter().filter(|one| *one != MATCHED);
     let others = others.filter(|one| *one != hair.best());
     others.chain([hair.best()]).collect()
 }
 
-/// The hair of a scene where none is asked for.
+/// Returns the hair of a scene if the flags name none.
 pub(super) fn preset(name: Name) -> Result<Choice, Error> {
     let preset = name.defaults().preset;
     Choice::find(MODEL, MATCHED, preset)
@@ -43,24 +43,24 @@ pub(super) fn preset(name: Name) -> Result<Choice, Error> {
 pub(super) struct Plan {
     /// Width and height of pictures in pixels.
     pub(super) side: u32,
-    /// Strands of hair.
+    /// Count of strands of hair.
     pub(super) strands: usize,
-    /// Samples of shading points, and of paths.
+    /// Counts of samples per pixel, for shading points and for paths.
     pub(super) samples: [&'static [u32]; 2],
-    /// Samples of each half of the reference, of shading points and of paths.
+    /// Samples per pixel of each half of the reference, for shading points and for paths.
     pub(super) reference: [u32; 2],
-    /// Pictures for each error.
+    /// Count of pictures from which each error is estimated.
     pub(super) runs: u32,
-    /// How light is estimated, in place of the scenes' own ways.
+    /// Integrator in place of the scenes' own, if the flags name one.
     pub(super) integrator: Option<Integrator>,
-    /// Source of the samplers' uniform numbers; references are of Sobol' points.
+    /// Source of the samplers' uniform numbers. References are always rendered with Sobol' points.
     pub(super) sequence: Sequence,
-    /// How directions towards rectangular lights are drawn.
+    /// Method that draws directions towards rectangular lights.
     pub(super) rectangle_sampling: RectangleSampling,
 }
 
 impl Plan {
-    /// A first look.
+    /// Settings for a first look, with small pictures and few samples.
     pub(super) const QUICK: Self = Self {
         side: 96,
         strands: 8_000,
@@ -84,7 +84,7 @@ impl Plan {
         rectangle_sampling: RectangleSampling::SolidAngle,
     };
 
-    /// Key of a scene with hair, without its light.
+    /// Returns the line that identifies a scene with its hair, without its light.
     pub(super) fn scene(&self, name: Name, hair: &Choice) -> String {
         let Self {
             side,
@@ -96,7 +96,7 @@ impl Plan {
         format!("scene={name} {hair} side={side} strands={strands} rectangles={rectangles:?}")
     }
 
-    /// How the samplers' pictures of a scene are made, but for what is their own.
+    /// Returns the settings of all samplers' pictures of a scene, except what differs between samplers.
     fn settings(&self, name: Name, seed: u64) -> Settings {
         let defaults = name.defaults();
         let integrator = self.integrator.unwrap_or(defaults.integrator);
@@ -108,7 +108,7 @@ impl Plan {
         }
     }
 
-    /// Refuses a scene with hair that paths do not converge in.
+    /// Rejects a scene with hair in which paths do not converge.
     pub(super) fn check(&self, name: Name, hair: &Choice) -> Result<(), Error> {
         let settings = self.settings(name, 1);
         let remedy = format!(
@@ -118,50 +118,50 @@ impl Plan {
         check_paths(&hair.hair(Energy::Raw)?, &settings, &hair.name, &remedy)
     }
 
-    /// Steps of progress for a count of scenes.
+    /// Returns the steps of progress for a count of scenes.
     pub(super) fn steps(&self, scenes: usize) -> usize {
         scenes * (2 + SAMPLERS.len() * (self.samples[0].len() + 1))
     }
 }
 
-/// One sampler on a scene.
+/// Measurements of one sampler on a scene.
 #[derive(Debug)]
 pub(super) struct BySampler {
-    /// Its name.
+    /// Name of the sampler.
     pub(super) name: &'static str,
     /// Renders by ascending count of samples.
     pub(super) runs: Vec<Runs>,
-    /// A picture that takes as long as the quickest sampler's at most samples.
+    /// Renders that take as long as those of the quickest sampler, at the count of samples that pictures show.
     pub(super) equal_time: Runs,
 }
 
-/// A scene with all its samplers.
+/// Measurements of all samplers on a scene.
 #[derive(Debug)]
 pub(super) struct Measured {
-    /// The scene.
+    /// Name of the scene.
     pub(super) name: Name,
-    /// Name of the map, if it is the caller's.
+    /// Name of the environment map, if it is the caller's.
     map: Option<String>,
-    /// How light is estimated.
+    /// Integrator that estimates the light.
     pub(super) integrator: Integrator,
     /// Name of the hair.
     pub(super) hair: String,
-    /// Settings of the pictures, but for samplers and samples.
+    /// Settings of the pictures, except samplers and samples.
     of_scene: String,
     /// Seed of the samples.
     seed: u64,
-    /// Samples of each half of the reference.
+    /// Samples per pixel of each half of the reference.
     halves: u32,
     /// Share of the rays towards lights that reach them, with the best sampler.
     pub(super) visible: f64,
     /// Picture that the others are compared with.
     pub(super) reference: Reference,
-    /// The samplers, in the order of [`SAMPLERS`]; the last is the best.
+    /// Samplers in the order of [`SAMPLERS`]; the last is the best.
     pub(super) samplers: Vec<BySampler>,
 }
 
 impl Measured {
-    /// Renders what is not in the store.
+    /// Renders the pictures that the store does not hold yet.
     pub(super) fn render(
         name: Name,
         map: Option<(String, Environment)>,
@@ -243,7 +243,7 @@ impl Measured {
                     .collect::<Result<Vec<Runs>, Error>>()?,
             ));
         }
-        // The middle count: the largest is kept for the numbers.
+        // Pictures show the second count; larger counts are kept for the numbers.
         let shown = shown(plan.samples[kind].len());
         let least = all
             .iter()
@@ -274,17 +274,17 @@ impl Measured {
         })
     }
 
-    /// Name of the scene on the page.
+    /// Returns the name of the scene on the page.
     pub(super) fn title(&self) -> String {
         title(self.name, self.map.as_deref(), &self.hair)
     }
 
-    /// Name of the best sampler.
+    /// Returns the name of the best sampler.
     pub(super) fn best(&self) -> &'static str {
         self.samplers.last().map_or(MATCHED, |best| best.name)
     }
 
-    /// Place of the count of samples that pictures show.
+    /// Returns the index of the count of samples that pictures show.
     pub(super) fn shown(&self) -> usize {
         shown(self.samplers[0].runs.len())
     }
@@ -330,7 +330,7 @@ impl Measured {
         Ok(())
     }
 
-    /// Attributes of a picture's file. Samplers' times are those of the fastest of several pictures.
+    /// Returns the attributes of a picture's file. Times of samplers are those of the fastest of several pictures.
     fn beside(&self, sampler: &str, samples: u32, seconds: f64) -> Beside {
         let machine = machine!();
         let attributes = vec![
@@ -351,7 +351,7 @@ impl Measured {
     }
 }
 
-/// Name of a scene on the page, with those of the map and of the hair where they are the caller's.
+/// Returns the name of a scene on the page, with the names of the map and of the hair if they are the caller's.
 pub(super) fn title(name: Name, map: Option<&str>, hair: &str) -> String {
     let word = name.word();
     let hair = Some(hair).filter(|hair| *hair != name.defaults().preset);
@@ -363,7 +363,7 @@ pub(super) fn title(name: Name, map: Option<&str>, hair: &str) -> String {
     }
 }
 
-/// Place of the count of samples that pictures show: the second.
+/// Returns the index of the count of samples that pictures show, which is the second.
 fn shown(counts: usize) -> usize {
     1.min(counts - 1)
 }

@@ -1,4 +1,4 @@
-//! One head of hair by every model, side by side.
+//! One head of hair rendered with every model, side by side.
 
 use super::map::Map;
 use super::measure::Plan;
@@ -15,10 +15,10 @@ use hairis_instruments::report::{Drawing, Section};
 use hairis_instruments::table::{Table, number};
 use hairis_variants::ModelId;
 
-/// Hair of every model, by the names of its presets.
+/// Names of the presets that every compared model has.
 pub(super) const PRESETS: [&str; 4] = ["blond", "brown", "black", "red"];
 
-/// Pictures of one preset, a model each; the first is the published one.
+/// Pictures of one preset, one for each model; the first model is the published one.
 #[derive(Debug)]
 pub(super) struct Preset {
     name: &'static str,
@@ -27,7 +27,7 @@ pub(super) struct Preset {
 }
 
 impl Preset {
-    /// Renders the scene `head` with every model, but what is in the store.
+    /// Renders the scene `head` with every model, except for pictures that the store holds.
     pub(super) fn render(
         name: &'static str,
         plan: &Plan,
@@ -36,7 +36,7 @@ impl Preset {
         step: &dyn Fn(&str),
     ) -> Result<Self, Error> {
         let scene = Name::Head;
-        // A quarter of what references of paths take: looks need less than errors.
+        // A quarter of the samples of references of paths, because looks need fewer samples than errors.
         let samples = plan.reference[1] / 4;
         let strands = scenes::grow(scene, plan.strands)?;
         let hair = |model: &str| {
@@ -103,17 +103,17 @@ impl Preset {
         })
     }
 
-    /// The preset.
+    /// Returns the name of the preset.
     pub(super) fn name(&self) -> &'static str {
         self.name
     }
 
-    /// Samples of each model's picture.
+    /// Returns the samples per pixel of each model's picture.
     pub(super) fn samples(&self) -> u32 {
         2 * self.samples
     }
 
-    /// Brightness and look of each model beside the first.
+    /// Returns the name, the relative brightness and the difference of the look of each model beside the first.
     pub(super) fn differences(&self) -> impl Iterator<Item = (&'static str, f64, f64)> {
         let first = self.models.first().map(|(_, first)| first);
         let rest = self.models.iter().skip(1);
@@ -124,7 +124,7 @@ impl Preset {
     }
 }
 
-/// The section of the page.
+/// Returns the section of the page that compares models.
 pub(super) fn section(presets: &[Preset]) -> std::io::Result<Section> {
     let mut table = Table::new("Models beside the published one")
         .texts(["hair", "model"])
@@ -155,7 +155,7 @@ pub(super) fn section(presets: &[Preset]) -> std::io::Result<Section> {
                 .zip(&signed)
                 .for_each(|(sum, difference)| *sum += difference * difference);
             let remark = format!("{}, {} samples", preset.name, preset.samples());
-            // Legends take the place of the first one's difference from itself.
+            // Legends take the place of the first picture's difference from itself.
             let errors = if columns.is_empty() {
                 Vec::new()
             } else {

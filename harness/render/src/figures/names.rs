@@ -1,15 +1,15 @@
-//! Names of maps and of pictures, none of them twice.
+//! Unique names of maps and of pictures.
 
 use hairis_instruments::error::Error;
 use hairis_materials::numbered;
 use std::path::{Component, Path, PathBuf};
 
-/// A name of each file: the last part of its path, with as many folders before it as tell it from
-/// the others.
+/// Returns a name for each file: the last part of its path, after as many folders as are needed to
+/// make the name unique.
 ///
 /// # Errors
 ///
-/// If a path is given twice.
+/// Returns a usage error if a path is given twice.
 pub(super) fn of_files(paths: &[PathBuf]) -> Result<Vec<String>, Error> {
     let parts = |path: &Path| -> PathBuf {
         path.components()
@@ -41,11 +41,11 @@ pub(super) fn of_files(paths: &[PathBuf]) -> Result<Vec<String>, Error> {
             .to_string_lossy()
             .into_owned()
     };
-    // Names that are no text may look alike.
+    // Names that are not Unicode may look alike.
     Ok(numbered(all.iter().map(name)))
 }
 
-/// Beginnings of the names of files, from the titles of scenes.
+/// Returns the beginnings of the names of picture files, made from the titles of scenes.
 pub(super) fn of_pictures(titles: &[String]) -> Vec<String> {
     numbered(
         titles

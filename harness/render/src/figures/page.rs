@@ -1,4 +1,4 @@
-//! The page.
+//! Page of the report, with its charts, tables and pictures.
 
 use super::map::{Map, scale};
 use super::measure::{BySampler, Measured, Plan, SAMPLERS};
@@ -22,7 +22,7 @@ use hairis_instruments::table::{Table, number};
 use std::io::Write as _;
 use std::path::Path;
 
-/// Writes `report.html`.
+/// Writes `report.html` with everything that is measured so far.
 pub(super) fn write(
     all: &[Measured],
     presets: &[Preset],
@@ -101,7 +101,7 @@ fn page(
     })
 }
 
-/// The error of each sampler in each scene.
+/// Draws a bar chart of error times time by sampler and scene, relative to the best sampler.
 fn overview(all: &[Measured]) -> Drawing {
     let measure = Measure::TrimmedRelMse;
     let axis = Axis::linear(format!(
@@ -136,13 +136,13 @@ fn overview(all: &[Measured]) -> Drawing {
     Drawing::new("", chart, format!("{caption}{}", left_out_text(&left_out)))
 }
 
-/// The samplers that are compared with the best of their scene, in any of the scenes.
+/// Returns the samplers that are compared with the best of their scene, in any of the scenes.
 fn others(all: &[Measured]) -> Vec<&'static str> {
     let is_other = |name: &&str| all.iter().any(|measured| other(measured, name).is_some());
     SAMPLERS.into_iter().filter(is_other).collect()
 }
 
-/// A sampler of a scene, unless it is the best.
+/// Finds a sampler of a scene by name, unless it is the best.
 fn other<'a>(measured: &'a Measured, name: &str) -> Option<&'a BySampler> {
     let [others @ .., _] = measured.samplers.as_slice() else {
         return None;
@@ -150,7 +150,7 @@ fn other<'a>(measured: &'a Measured, name: &str) -> Option<&'a BySampler> {
     others.iter().find(|one| one.name == name)
 }
 
-/// Names the points that a chart leaves out.
+/// Returns a sentence that names the points that a chart leaves out, or nothing if there are none.
 fn left_out_text(names: &[String]) -> String {
     if names.is_empty() {
         String::new()
@@ -159,7 +159,7 @@ fn left_out_text(names: &[String]) -> String {
     }
 }
 
-/// Table of ratios of error times time, scene by scene.
+/// Returns the table of error times time by scene, relative to the best sampler.
 fn summary(all: &[Measured]) -> Table {
     let mut table = Table::new(format!("Error × time, relative to {}", best(all)))
         .texts(["scene", "light"])
@@ -216,7 +216,7 @@ pub(super) fn kind(measured: &Measured) -> &'static str {
     }
 }
 
-/// A number from an error, marked if the error is below the reference.
+/// Appends a mark to a number if the error it comes from is below the reference.
 fn marked(runs: &Runs, measure: Measure, text: String) -> String {
     if runs.is_below_reference(measure) {
         text + BELOW
@@ -281,7 +281,7 @@ struct Maps {
 }
 
 impl Maps {
-    /// Scales that cover the errors of all runs.
+    /// Chooses crops, and creates maps whose scales cover the errors of all runs.
     fn new(measured: &Measured, all: &[&Runs]) -> Self {
         let reference = &measured.reference;
         let bias: Vec<f64> = all
@@ -351,7 +351,7 @@ impl Maps {
     }
 }
 
-/// The chart, and the points that are below the reference.
+/// Draws error against samples, and returns the chart with the names of the points below the reference.
 fn convergence(measured: &Measured) -> (String, Vec<String>) {
     let measure = Measure::RelMse;
     let point = |runs: &Runs| (f64::from(runs.samples), runs.mean(measure));

@@ -1,4 +1,4 @@
-//! Pictures side by side as one drawing that needs no other file.
+//! Pictures side by side as one SVG drawing that needs no other file.
 
 use super::map::Map;
 use crate::film::{Crop, Picture};
@@ -17,7 +17,8 @@ const LABEL: u32 = 18;
 /// Magnification of crops.
 const ZOOM: u32 = 4;
 
-/// A column: a title, a remark, a picture, and a number per pixel for each map; without any, legends take their places.
+/// Column of a panel: a title, a remark, a picture, and one error per pixel for each map. If the first column has no errors, it holds
+/// the legends.
 pub(super) struct Column<'a> {
     pub(super) title: String,
     pub(super) remark: String,
@@ -25,7 +26,7 @@ pub(super) struct Column<'a> {
     pub(super) errors: Vec<Vec<f64>>,
 }
 
-/// Rows of pictures, of crops and of error maps, as SVG.
+/// Draws rows of pictures, of crops and of error maps as SVG.
 pub(super) fn panel(
     columns: &[Column],
     crops: &[Crop; 2],
@@ -148,7 +149,7 @@ fn picture(
     Ok(())
 }
 
-/// At least as many pixels as are shown, each a square: viewers that smooth what they enlarge then keep the pixels.
+/// Enlarges an image to at least as many pixels as are shown, so that viewers that smooth what they enlarge keep each pixel square.
 fn enlarge(image: &RgbImage) -> RgbImage {
     let by = (2 * WIDTH).div_ceil(image.width().max(1)).max(1);
     resize(
@@ -159,7 +160,7 @@ fn enlarge(image: &RgbImage) -> RgbImage {
     )
 }
 
-/// Two parts of `1 / ZOOM` the size that do not overlap: the brightest, and that of the largest squared error.
+/// Returns two parts of `1 / ZOOM` the size that do not overlap: the brightest part, and the part of the largest squared error.
 pub(super) fn crops(picture: &Picture, squares: &[f64]) -> [Crop; 2] {
     let [width, height] = picture.size.map(|side| (side / ZOOM).max(1));
     let starts =

@@ -1,15 +1,15 @@
-//! How errors fall with samples, sampler by sampler.
+//! Rates at which errors fall with samples, sampler by sampler.
 
 use super::measure::Measured;
 use crate::protocol::{Measure, Reach, Runs, reach, slope_of};
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::{Table, number};
 
-/// The error that samples and time are told to.
+/// Measure of the error for which the table states samples and time.
 const MEASURE: Measure = Measure::RelMse;
 
-/// The level of relMSE that most samplers reach within their counts of samples: 1, 2 or 5 times a power of ten; of several
-/// the one nearest to what the last sampler has at the count that pictures show.
+/// Returns the level of relMSE that most samplers reach within their counts of samples, as 1, 2 or 5 times a power of ten. Among
+/// several such levels, the nearest to the error of the last sampler, at the count that pictures show, is returned.
 pub(super) fn level(measured: &Measured) -> f64 {
     let all: Vec<&[Runs]> = measured
         .samplers
@@ -33,7 +33,7 @@ pub(super) fn level(measured: &Measured) -> f64 {
         .map_or(near, |(_, level)| level)
 }
 
-/// Samples and time to a relMSE, and slopes.
+/// Returns the table of samples and time to a level of relMSE, and of slopes.
 pub(super) fn table(measured: &Measured) -> Table {
     let level = level(measured);
     let level_text = number::plain(level, 1);

@@ -1,4 +1,4 @@
-//! Finished measurements as files, for a run that is started again after it was stopped.
+//! Finished measurements as files, so that a run that was stopped can continue.
 
 use crate::film::{Crop, Film, Picture};
 use crate::part::{Log, Part, Reader, build, digest, seal, unseal};
@@ -19,23 +19,23 @@ use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// First line of a file, but for the number of the format.
+/// Beginning of the first line of a file, without the number of the format.
 const FORMAT: &str = "hairis-render measurement ";
-/// First line of a file.
+/// First line of a file, with the number of the format.
 const MAGIC: &str = "hairis-render measurement 2";
 
-/// Samples of a pixel that are added before others are, at shading points: each pass finds its
-/// points again, in next to no time beside so many samples.
+/// Samples per pixel and pass at shading points. Each pass finds its points again, which takes next
+/// to no time beside so many samples.
 const GATHER_PASS: u32 = 1024;
-/// Samples per pass of paths.
+/// Samples per pixel and pass of paths.
 const PATH_PASS: u32 = 64;
-/// A picture that took longer is kept while the others of its measurement are rendered.
+/// Time of rendering above which a picture is kept while the others of its measurement are rendered.
 const MOMENT: Duration = Duration::from_millis(300);
 
-/// A folder of finished measurements.
+/// Folder of finished measurements.
 ///
-/// The name of a file has a digest of everything that the measurement depends on, and its second line spells that out: a
-/// run with other settings, another seed or another build has other files.
+/// The name of a file has a digest of everything that the measurement depends on, and the second line of the file spells that out.
+/// A run with other settings, another seed or another build therefore has other files.
 #[derive(Debug)]
 pub(super) struct Store {
     folder: PathBuf,
@@ -47,11 +47,11 @@ pub(super) struct Store {
 }
 
 impl Store {
-    /// The measurements of the report in `out`, by a run that `interrupt` may end.
+    /// Opens the folder of measurements for the report in `out`, for a run that `interrupt` may end.
     ///
     /// # Errors
     ///
-    /// If there can be no such folder, or if it holds measurements in another format.
+    /// Returns an error if the folder cannot be made or read, or if it holds measurements in another format.
     pub(super) fn new(out: &Path, interrupt: Interrupt) -> Result<Self, Error> {
         let folder = out.join("unfinished");
         let refuse = |source| Error::Output {
@@ -71,12 +71,12 @@ impl Store {
         })
     }
 
-    /// A measurement: read if an earlier run has finished it, made and written if not. `settings` is a line of everything
-    /// that it depends on.
+    /// Returns a measurement, which is read if an earlier run has finished it, and is otherwise made and written. `settings` is a line
+    /// of everything that the measurement depends on.
     ///
     /// # Errors
     ///
-    /// If the file cannot be written; those of `measure`.
+    /// Returns an error if the file cannot be written, or the error of `measure`.
     pub(super) fn get(
         &self,
         name: &str,
@@ -101,18 +101,18 @@ impl Store {
         let bytes = bytes(&measured, &key);
         whole(&path, |out| out.write_all(&bytes))?;
         for path in films.paths.into_inner() {
-            // Quick pictures have left none.
+            // Ignore errors: quick pictures have left no file.
             let _ = fs::remove_file(path);
         }
         Ok(measured)
     }
 
-    /// A reference of two halves of `samples` samples each. `of_scene` is a line of everything that it depends on, but for the
-    /// settings and the samples.
+    /// Returns a reference of two halves of `samples` samples per pixel each. `of_scene` is a line of everything that the reference
+    /// depends on, except the settings and the samples.
     ///
     /// # Errors
     ///
-    /// As [`get`](Self::get).
+    /// Returns the errors of [`get`](Self::get).
     pub(super) fn reference(
         &self,
         name: &str,
@@ -133,23 +133,23 @@ impl Store {
         Ok(Reference::new(&a.picture, &b.picture).with_seconds(a.seconds + b.seconds))
     }
 
-    /// Folder of the files.
+    /// Returns the folder of the files.
     pub(super) fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// Measurements that an earlier run has left.
+    /// Returns the count of measurements that an earlier run has left.
     pub(super) fn resumed(&self) -> usize {
         self.resumed.get()
     }
 
-    /// Removes the files of this run, whose report is whole.
+    /// Removes the files of this run, whose report is complete.
     pub(super) fn remove(self) {
         for path in self.used.into_inner() {
-            // What is gone need not be removed.
+            // Ignore errors: a file that is gone need not be removed.
             let _ = fs::remove_file(path);
         }
-        // It stays if runs with other settings have left files.
+        // The folder stays if runs with other settings have left files.
         let _ = fs::remove_dir(self.folder);
     }
 }
@@ -158,18 +158,18 @@ impl Store {
 /// longer than a moment.
 pub(super) struct Films<'a> {
     store: &'a Store,
-    /// Name of the measurement's file, but for the ending.
+    /// Name of the measurement's file without its ending.
     stem: String,
     key: &'a str,
     paths: RefCell<Vec<PathBuf>>,
 }
 
 impl Films<'_> {
-    /// Renders the whole picture of a scene, or what an earlier run has left to do of it.
+    /// Renders the whole picture of a scene, or the rest of it if an earlier run has left a part.
     ///
     /// # Errors
     ///
-    /// If it cannot be saved, and [`Error::Interrupted`].
+    /// Returns an error if the picture cannot be saved, and [`Error::Interrupted`] if the run is stopped.
     pub(super) fn render(
         &self,
         scene: &Scene,
@@ -212,10 +212,10 @@ impl Films<'_> {
     }
 }
 
-/// Refuses a measurement in another format, by name.
+/// Rejects a measurement in another format, with an error that names the file.
 fn check_format(path: &Path) -> Result<(), Error> {
     let mut first = String::new();
-    // What cannot be read or is no text is damaged, or no measurement.
+    // A file that cannot be read or is no text is damaged, or is no measurement.
     let line = fs::File::open(path).map(|file| BufReader::new(file.take(80)).read_line(&mut first));
     if line.is_ok() && first.starts_with(FORMAT) && first.trim_end() != MAGIC {
         let (path, got) = (path.display(), first.trim_end());
@@ -226,7 +226,7 @@ fn check_format(path: &Path) -> Result<(), Error> {
     Ok(())
 }
 
-/// Reads a file; `None`, and a remark, if it is damaged.
+/// Reads a measurement. Returns `None` if there is no file, or, with a remark, if the file is damaged.
 fn read(path: &Path, key: &str) -> Option<Runs> {
     let problem = match fs::read(path) {
         Ok(bytes) => match parse(&bytes, key) {
@@ -240,7 +240,7 @@ fn read(path: &Path, key: &str) -> Option<Runs> {
     None
 }
 
-/// Two lines of text, the numbers, and a digest of all that.
+/// Encodes a measurement as two lines of text, the numbers, and a digest of both.
 fn bytes(measured: &Runs, key: &str) -> Vec<u8> {
     let Runs {
         samples,

@@ -1,4 +1,4 @@
-//! Runs that are stopped and started again.
+//! Runs of figures that are stopped and started again.
 
 use super::measure::{Measured, Plan, preset};
 use super::models::Preset;
@@ -27,13 +27,13 @@ const TINY: Plan = Plan {
     ..Plan::QUICK
 };
 
-/// Measures a scene, and stops at the given step of progress; with the count of measurements that were there.
+/// Measures a scene, and stops at the given step of progress. Also returns the count of measurements that were there.
 fn measured(plan: &Plan, seed: u64, out: &Path, last: usize) -> Option<(Measured, usize)> {
     let hair = preset(Name::AreaHead).expect("listed");
     measured_with(&hair, plan, seed, out, last)
 }
 
-/// Measurements of a scene with other hair.
+/// Measures a scene with other hair.
 fn measured_with(
     hair: &Choice,
     plan: &Plan,
@@ -54,7 +54,7 @@ fn measured_with(
     Some((measured, store.resumed()))
 }
 
-/// All of the runs but their times.
+/// Returns all runs without their times.
 fn results(measured: &Measured) -> Vec<Runs> {
     let runs = measured.samplers.iter().flat_map(|sampler| &sampler.runs);
     runs.map(|runs| Runs {

@@ -1,4 +1,4 @@
-//! The sentences that follow from the numbers of a scene.
+//! Sentences that follow from the numbers of a scene.
 
 use super::measure::{BySampler, Measured, RESAMPLED};
 use crate::protocol::{Measure, Runs};
@@ -6,18 +6,18 @@ use core::cmp::Ordering;
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::number::{ratio, ratio_with_error};
 
-/// A gain below this, or within two standard errors of 1, is none.
+/// Least ratio of errors that counts as a gain, if it also differs from 1 by more than two standard errors.
 const GAIN: f64 = 1.15;
 
-/// The errors that are compared.
+/// Measures of error that are compared.
 pub(super) const MEASURES: [Measure; 3] = [Measure::Mse, Measure::RelMse, Measure::TrimmedRelMse];
-/// The two that say most: what is seen of most pixels, and what the brightest errors add to it.
+/// Two measures that say most: one of what is seen of most pixels, and one of what the brightest errors add to it.
 const HEADLINE: [Measure; 2] = [Measure::TrimmedRelMse, Measure::Mse];
 
-/// A mark behind errors that cannot be told from noise of the reference.
+/// Mark behind errors that cannot be told from noise of the reference.
 pub(super) const BELOW: &str = " (below the reference)";
 
-/// A ratio of errors, and whether one of them is below the reference.
+/// Ratio of two errors, and whether one of them is below the reference.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gain {
     pub(super) ratio: Estimate,
@@ -25,7 +25,7 @@ pub(super) struct Gain {
 }
 
 impl Gain {
-    /// Ratio of the error of `runs` to that of `best`.
+    /// Returns the ratio of the error of `runs` to that of `best`, each multiplied by its time if `with_time` is set.
     pub(super) fn new(runs: &Runs, best: &Runs, measure: Measure, with_time: bool) -> Self {
         let is_below = runs.is_below_reference(measure) || best.is_below_reference(measure);
         Self {
@@ -34,13 +34,13 @@ impl Gain {
         }
     }
 
-    /// In words.
+    /// Formats the ratio with its standard error, and a mark if an error is below the reference.
     pub(super) fn text(&self) -> String {
         let mark = if self.is_below { BELOW } else { "" };
         ratio_with_error(self.ratio.value, self.ratio.standard_error) + mark
     }
 
-    /// Whether it is above 1 by a gain, is below it by one, or is neither, by what is left of it within two standard errors.
+    /// Returns `Greater` or `Less` if the ratio differs from 1 by a gain and by more than two standard errors, and otherwise `Equal`.
     fn side(&self) -> Ordering {
         let Estimate {
             value,
@@ -58,7 +58,8 @@ impl Gain {
         }
     }
 
-    /// Whether it lies between 1 / `GAIN` and `GAIN` with two standard errors to spare: there is no gain, rather than none found.
+    /// Returns true if the ratio lies between 1 / `GAIN` and `GAIN` with two standard errors to spare: a gain is ruled out, rather than
+    /// not found.
     fn is_none(&self) -> bool {
         let Estimate {
             value,
@@ -70,7 +71,7 @@ impl Gain {
     }
 }
 
-/// Ratio of error times time with a sampler to that with the last, at the count that pictures show.
+/// Returns the ratio of error times time with a sampler to that with the last one, at the count of samples that pictures show.
 pub(super) fn gain(measured: &Measured, sampler: &BySampler, measure: Measure) -> Gain {
     let shown = measured.shown();
     let best = measured.samplers.last().unwrap_or(sampler);
@@ -81,8 +82,8 @@ fn headline_gains(measured: &Measured, sampler: &BySampler) -> [Gain; 2] {
     HEADLINE.map(|measure| gain(measured, sampler, measure))
 }
 
-/// Whether it matters how directions are drawn: with every sampler that draws them, both errors times time are those of the last.
-/// Rays chosen from candidates are another way to choose rays, and do not count here.
+/// Returns true if it matters how directions are drawn. It does not if both errors times time are those of the last sampler, with every
+/// sampler that draws directions. Rays chosen from candidates do not count here, because they are another way to choose rays.
 fn matters(measured: &Measured) -> bool {
     let drawn = measured
         .samplers
@@ -95,7 +96,7 @@ fn matters(measured: &Measured) -> bool {
         .all(|gain| gain.is_none())
 }
 
-/// The margin of [`Gain::is_none`], in words.
+/// Returns the margin of [`Gain::is_none`] in words.
 fn within() -> String {
     format!("within {:.0} % of", 100.0 * (GAIN - 1.0))
 }
@@ -167,7 +168,7 @@ fn answer(measured: &Measured) -> String {
     }
 }
 
-/// "a", "a and b", "a, b and c".
+/// Joins names as in "a", "a and b" and "a, b and c".
 fn listed(names: &[&str]) -> String {
     match names {
         [others @ .., last] if !others.is_empty() => format!("{} and {last}", others.join(", ")),
@@ -175,7 +176,7 @@ fn listed(names: &[&str]) -> String {
     }
 }
 
-/// Names of the samplers that others are compared with.
+/// Returns the names of the samplers that others are compared with.
 pub(super) fn best(all: &[Measured]) -> String {
     let mut names: Vec<&str> = all.iter().map(Measured::best).collect();
     names.sort_unstable();
@@ -183,7 +184,7 @@ pub(super) fn best(all: &[Measured]) -> String {
     names.join(" or ")
 }
 
-/// The scenes where the sampler does not matter, and the rule.
+/// Names the scenes where the sampler does not matter, and states the rule.
 pub(super) fn scenes(all: &[Measured]) -> String {
     let (yes, no): (Vec<&Measured>, Vec<&Measured>) =
         all.iter().partition(|measured| matters(measured));
@@ -207,7 +208,7 @@ pub(super) fn scenes(all: &[Measured]) -> String {
     }
 }
 
-/// The answer, with the two errors that say most in short.
+/// Returns the answer, followed by the two errors that say most.
 pub(super) fn headline(measured: &Measured) -> String {
     let [others @ .., best] = measured.samplers.as_slice() else {
         return String::new();
@@ -230,7 +231,7 @@ pub(super) fn headline(measured: &Measured) -> String {
     )
 }
 
-/// All errors, with their standard errors.
+/// Returns the answer, followed by all errors with their standard errors.
 pub(super) fn sentence(measured: &Measured) -> String {
     let samples = measured.samplers[0].runs[measured.shown()].samples;
     let [others @ .., best] = measured.samplers.as_slice() else {
@@ -253,7 +254,7 @@ pub(super) fn sentence(measured: &Measured) -> String {
     format!("{} {numbers}", answer(measured))
 }
 
-/// Share of rays that reach a light.
+/// States the share of rays towards lights that reach them.
 pub(super) fn visible(measured: &Measured) -> String {
     format!(
         "{:.0} % of the rays towards lights reach them.",

@@ -1,4 +1,4 @@
-//! Distance of a picture from the target, with its derivatives.
+//! Distance of a picture from the target of a fit, with its derivatives.
 
 use super::target::Target;
 use super::variables::Variables;
@@ -11,7 +11,7 @@ use hairis_gradients::{AnyGradients, GradColumns, Weights};
 use hairis_variants::{ModelId, Values};
 use rayon::prelude::*;
 
-/// Two independent halves of the recorded paths of a tile.
+/// Recorded paths of a tile, in two independent halves.
 #[derive(Clone, Debug)]
 pub struct Halves {
     place: Crop,
@@ -19,7 +19,7 @@ pub struct Halves {
     samples: u32,
 }
 
-/// Records the paths of a picture, `samples` per pixel and half.
+/// Records the paths of a picture tile by tile, in two independent halves of `samples` per pixel each.
 #[must_use]
 pub fn halves(scene: &Scene, settings: &Settings, crop: Crop, samples: u32) -> Vec<Halves> {
     let tiles: Vec<Crop> = crop.tiles(TILE).collect();
@@ -38,20 +38,20 @@ pub fn halves(scene: &Scene, settings: &Settings, crop: Crop, samples: u32) -> V
     tiles.into_par_iter().map(of_tile).collect()
 }
 
-/// The distance, and its derivatives by the variables.
+/// Distance of a picture from its target, with its derivatives by the variables.
 ///
-/// The distance is the sum of `weight (A - T) (B - T)` over pixels and channels, of the target `T` and pictures `A` and `B` that are
-/// made of independent halves of the paths: it is an unbiased estimate of the weighted square of the error, and its derivative one
-/// of the derivative of that.
+/// The distance is the sum of `weight (A - T) (B - T)` over pixels and channels, where `T` is the target, and the pictures `A` and `B`
+/// are made of independent halves of the paths. It is therefore an unbiased estimate of the weighted squared error, and its derivative
+/// is an unbiased estimate of the derivative of that error.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Slope {
-    /// The distance.
+    /// Distance of the picture from the target.
     pub distance: f64,
-    /// Its derivative by each variable.
+    /// Derivative of the distance by each variable.
     pub gradient: Vec<f64>,
-    /// Second derivatives by the rule of Gauss and Newton: products of first derivatives of both halves, by rows.
+    /// Second derivatives by the rule of Gauss and Newton: products of the first derivatives of both halves, by rows.
     pub curvature: Vec<Vec<f64>>,
-    /// Squares of the first derivatives of each half: above the diagonal of the curvature by the noise of the paths.
+    /// Weighted squares of the first derivatives of each half, which exceed the diagonal of the curvature by the noise of the paths.
     pub squares: Vec<f64>,
 }
 
@@ -78,7 +78,7 @@ impl Slope {
     }
 }
 
-/// A picture that is to look like a target.
+/// Objective of a fit: the variables of a model, and the target that its picture is to match.
 #[derive(Clone, Debug)]
 pub struct Objective {
     target: Target,
@@ -87,10 +87,10 @@ pub struct Objective {
 }
 
 impl Objective {
-    /// Looks for the variables of a model. Its sampler is not used.
+    /// Creates the objective for the variables of a model. The sampler of `model` is not used.
     #[must_use]
     pub fn new(target: Target, model: ModelId, variables: Variables) -> Self {
-        // All samplers of a model have one S, and the first has the fewest numbers.
+        // All samplers of a model share one BSDF, and the first sampler has the fewest numbers.
         let model = ModelId::find(model.name(), None).unwrap_or(model);
         Self {
             target,
@@ -99,11 +99,11 @@ impl Objective {
         }
     }
 
-    /// The distance at these variables, and its derivatives.
+    /// Returns the distance of the picture of these paths at the variables `x`, with its derivatives.
     ///
     /// # Errors
     ///
-    /// If the model refuses a value.
+    /// Returns an error if the model rejects a value.
     pub fn slope(&self, paths: &[Halves], x: &[f64]) -> Result<Slope, ParamError> {
         let values = self.variables.values(x);
         let gradients = AnyGradients::new(self.model, &values)?;
@@ -117,7 +117,7 @@ impl Objective {
         Ok(sum)
     }
 
-    /// The derivative of each variable's numbers of the material, a row per number.
+    /// Returns the derivatives of the numbers of the material by the variables, one row per number.
     fn by_numbers(&self, gradients: &AnyGradients, x: &[f64]) -> Vec<Vec<f64>> {
         let count = gradients.material().len();
         let slopes = self.variables.slopes(x);
@@ -143,7 +143,7 @@ impl Objective {
                 slope.distance += weight[c] * off_a * off_b;
                 let rows = [&a, &b].map(|half| &half.derivatives[at * count..][..count]);
                 let [by_a, by_b] = rows;
-                // Most pixels beside the hair have none.
+                // Most pixels beside the hair have no derivatives.
                 if rows.iter().all(|row| row.iter().all(|d| *d == 0.0)) {
                     continue;
                 }
@@ -161,11 +161,11 @@ impl Objective {
     }
 }
 
-/// Pixels of recorded paths for a material.
+/// Pixels of recorded paths, evaluated with a material.
 struct Pixels {
-    /// Three channels per pixel.
+    /// Radiance, three channels per pixel.
     radiance: Vec<f64>,
-    /// Derivatives by each variable, per channel of a pixel.
+    /// Derivatives by each variable, for each channel of a pixel.
     derivatives: Vec<f64>,
 }
 

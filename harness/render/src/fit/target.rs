@@ -1,4 +1,4 @@
-//! The picture that is fitted.
+//! Target of a fit: a picture with the weights of its pixels.
 
 use crate::film::{Crop, Picture};
 use exr::block;
@@ -8,15 +8,15 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-/// Pixels to each side whose mean weighs a pixel: few enough to follow the light, and enough that the noise of the pixel itself
-/// has little part in its weight. Weights by the pixel alone would favour those that are dark by chance.
+/// Reach, in pixels to each side, of the mean from which the weight of a pixel follows. It is small enough to follow the light, and
+/// large enough that the noise of the pixel itself matters little. Weights by the pixel alone would favour pixels that are dark by chance.
 const REACH: u32 = 3;
-/// Radiance that is added to that of the pixel, relative to the mean of the picture.
+/// Radiance that is added to the mean around a pixel, relative to the mean of the picture.
 const FLOOR: f64 = 0.1;
-/// Longest side of a picture.
+/// Longest side of a picture in pixels.
 const LONGEST: usize = 16384;
 
-/// A picture with the weights of its pixels.
+/// Picture that a fit is to match, with the weights of its pixels.
 #[derive(Clone, Debug)]
 pub struct Target {
     crop: Crop,
@@ -27,12 +27,12 @@ pub struct Target {
 }
 
 impl Target {
-    /// The part of a picture of `size` pixels, with weights `1 / (mean^2 + floor^2)` per channel over its count of pixels: the mean of
-    /// the pixels around, and a tenth of that of the picture.
+    /// Creates a target from the part `crop` of a picture of `size` pixels. Weights per channel are `1 / (mean^2 + floor^2)` over the count
+    /// of pixels, where `mean` is that of the pixels around, and `floor` is a tenth of the mean of the picture.
     ///
     /// # Errors
     ///
-    /// If a pixel is not finite, or a channel is black.
+    /// Returns an error if a pixel is not finite, or if the mean of a channel is not above zero.
     pub fn new(picture: &Picture, crop: Crop, size: [u32; 2]) -> Result<Self, String> {
         for (pixel, radiance) in crop.pixels().zip(&picture.pixels) {
             if let Some(c) = (0..3).find(|c| !radiance[*c].is_finite()) {
@@ -67,12 +67,13 @@ impl Target {
         })
     }
 
-    /// Reads a picture: the channels R, G and B of the first layer. A data window within a larger display window is a part of the
-    /// picture.
+    /// Reads a picture from the channels R, G and B of the first layer of an EXR file. If the data window is smaller than the display
+    /// window, the target is a part of the picture.
     ///
     /// # Errors
     ///
-    /// If it cannot be read, has no such channels or pixels that are not finite, or reaches beyond its display window.
+    /// Returns an error if the file cannot be read, if it has no such channels or has pixels that are not finite, or if its data window
+    /// reaches beyond its display window.
     pub fn read(path: &Path) -> Result<Self, String> {
         let unreadable = |problem: exr::error::Error| {
             let line = problem.to_string().replace(['\n', '\r'], " ");
@@ -80,7 +81,7 @@ impl Target {
         };
         let file = File::open(path).map_err(|problem| unreadable(problem.into()))?;
         let chunks = block::read(BufReader::new(file), false).map_err(unreadable)?;
-        // Decoding takes memory for every pixel of the data window, which the header alone states.
+        // Check the windows first: decoding takes memory for every pixel of the data window, which the header alone states.
         let (crop, size) = windows(&chunks.headers()[0])?;
         let image = read()
             .no_deep_data()
@@ -116,19 +117,19 @@ impl Target {
         })
     }
 
-    /// The part of the picture.
+    /// Returns the part of the whole picture that the target covers.
     #[must_use]
     pub fn crop(&self) -> Crop {
         self.crop
     }
 
-    /// Width and height of the whole picture in pixels.
+    /// Returns the width and height of the whole picture in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// The picture.
+    /// Returns the part of the picture that the target covers.
     #[must_use]
     pub fn picture(&self) -> Picture {
         Picture {
@@ -137,14 +138,14 @@ impl Target {
         }
     }
 
-    /// Radiance and weights of a pixel.
+    /// Returns the radiance and the weights of a pixel of the whole picture, channel by channel.
     #[must_use]
     pub fn pixel(&self, pixel: [u32; 2]) -> ([f64; 3], [f64; 3]) {
         let place = self.crop.index(pixel);
         (self.radiance[place], self.weights[place])
     }
 
-    /// The settings of this renderer that its light differs by from `expected`, each `name=value`, if the file says so.
+    /// Describes each setting `name=value` of the run that rendered the target, if the file states it, that differs from `expected`.
     #[must_use]
     pub fn differences(&self, expected: &[String]) -> Vec<String> {
         let words: Vec<&str> = self.run.as_deref().unwrap_or_default().split(' ').collect();
@@ -159,7 +160,7 @@ impl Target {
     }
 }
 
-/// The part of the picture in the data window, and the size of the display window, which is the whole picture.
+/// Returns the part of the picture in the data window, and the size of the display window, which is the whole picture.
 fn windows(header: &Header) -> Result<(Crop, [u32; 2]), String> {
     let display = header.shared_attributes.display_window;
     let side = |pixels: usize| {
@@ -206,7 +207,7 @@ fn number(samples: &FlatSamples, place: usize) -> f64 {
     }
 }
 
-/// Means over the pixels around each.
+/// Returns the mean over the pixels around each pixel.
 fn smooth(picture: &Picture) -> Vec<[f64; 3]> {
     let [width, height] = picture.size;
     let around = |at: u32, count: u32| at.saturating_sub(REACH)..(at + REACH + 1).min(count);

@@ -1,19 +1,19 @@
-//! Variables of a fit: factors on numbers of a model's fields.
+//! Variables of a fit, which scale or shift the numbers of a model's fields.
 
 use hairis_materials::material::single;
 use hairis_variants::{Field, Kind, Values};
 
-/// Longest step of a logarithm.
+/// Longest step of a variable that is the logarithm of a factor.
 const LOG_STEP: f64 = 0.3;
 /// Longest step of any other variable.
 const STEP: f64 = 0.05;
 /// Largest logarithm of a factor.
 const MOST_LOG: f64 = 10.0;
-/// Number that takes the place of 0 where a factor on it is looked for.
+/// Number that takes the place of 0 if a factor on it is to be found.
 const LEAST: f64 = 1e-3;
-/// Fields that are neither colours, widths nor shifts of lobes.
+/// Fields that stay as they are unless freed: neither colours, widths nor shifts of lobes.
 const HELD: &[&str] = &["i_r", "phi_g", "i_g", "eta"];
-/// Fields whose numbers have common factors: per group, or else per channel to this power.
+/// Fields whose numbers share factors, either by group, or by channel with this power.
 const TIED: &[(&str, Tie)] = &[
     ("alpha", Tie::Group("shifts")),
     ("beta", Tie::Group("widths")),
@@ -29,24 +29,24 @@ enum Tie {
     Channel(f64),
 }
 
-/// Number of a field: the index of the field, and its place there.
+/// Place of a number: the index of its field, and the index within the field.
 type Place = [usize; 2];
 
-/// One variable, 0 at the start: `number = base exp(power x)`, or `base + x`.
+/// Variable of a fit, 0 at the start: `number = base exp(power x)`, or `base + x`.
 #[derive(Clone, Debug)]
 struct Variable {
     key: String,
-    /// Numbers that depend on it, and their powers.
+    /// Numbers that depend on the variable, with their powers.
     members: Vec<(Place, f64)>,
     is_log: bool,
-    /// Least and largest variable.
+    /// Least and largest value of the variable.
     range: [f64; 2],
 }
 
-/// The variables of a fit. Words stay as they are.
+/// Variables of a fit, which scale or shift the numbers of a model's fields. Words stay as they are.
 ///
-/// The published model has one factor on all shifts, one on all widths, and per channel one on the transmittance of a passage through
-/// the fibre, which TT makes once and TRT twice. Numbers of other models, but for the index of refraction, are variables of their own.
+/// The published model has one factor on all shifts, one on all widths, and one per channel on the transmittance of a passage through
+/// the fibre, which TT makes once and TRT twice. In other models, every number except the index of refraction is a variable of its own.
 #[derive(Clone, Debug)]
 pub struct Variables {
     base: Values,
@@ -54,8 +54,8 @@ pub struct Variables {
 }
 
 impl Variables {
-    /// The variables of values. Numbers of fields that are `fixed` stay, and those of fields that are `free` are variables of
-    /// their own.
+    /// Creates the variables of a fit from `start`. Numbers of fields that are `fixed` stay, and numbers of fields that are `free` are
+    /// variables of their own.
     #[must_use]
     pub fn new(start: &Values, fixed: &[String], free: &[String]) -> Self {
         let (mut base, mut all) = (*start, Vec::<Variable>::new());
@@ -106,13 +106,13 @@ impl Variables {
         Self { base, all }
     }
 
-    /// Count of the variables.
+    /// Returns the count of variables that the fit is to find.
     #[must_use]
     pub fn len(&self) -> usize {
         self.all.len()
     }
 
-    /// Whether there are none.
+    /// Returns true if there is no variable to find.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()
@@ -126,7 +126,7 @@ impl Variables {
         self.all.iter().enumerate().flat_map(of_variable)
     }
 
-    /// Names of the numbers that depend on the variables: the field, with a label where the field has several.
+    /// Returns the names of the numbers that depend on the variables: the field, with a label where the field has several.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
         let fields = self.base.fields();
@@ -135,7 +135,7 @@ impl Variables {
             .collect()
     }
 
-    /// The numbers that depend on the variables.
+    /// Returns the numbers that depend on the variables, in the order of [`names`](Self::names).
     #[must_use]
     pub fn numbers(&self, x: &[f64]) -> Vec<f64> {
         let number = |(k, at, power)| self.number(k, at, power, x[k]);
@@ -151,7 +151,7 @@ impl Variables {
         }
     }
 
-    /// Derivatives of the numbers, each by its variable.
+    /// Returns the derivative of each number by its variable.
     #[must_use]
     pub fn slopes(&self, x: &[f64]) -> Vec<f64> {
         let slope = |(k, at, power): (usize, Place, f64)| {
@@ -164,13 +164,13 @@ impl Variables {
         self.members().map(slope).collect()
     }
 
-    /// A number per variable spread to the numbers that depend on it.
+    /// Spreads one number per variable to all numbers that depend on that variable.
     #[must_use]
     pub fn spread(&self, of_variables: &[f64]) -> Vec<f64> {
         self.members().map(|(k, ..)| of_variables[k]).collect()
     }
 
-    /// The values of variables.
+    /// Returns the values of the material for these variables, clamped to the ranges of their fields.
     #[must_use]
     pub fn values(&self, x: &[f64]) -> Values {
         let mut values = self.base;
@@ -184,7 +184,7 @@ impl Variables {
         values
     }
 
-    /// Derivatives by the variables, from those by numbers of the fields.
+    /// Returns derivatives by the variables, from derivatives by numbers of the fields and from [`slopes`](Self::slopes).
     #[must_use]
     pub fn derivatives(&self, by_numbers: &Values<f64>, slopes: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0; self.len()];
@@ -194,7 +194,7 @@ impl Variables {
         sums
     }
 
-    /// Variables after a step, which is shortened to the longest that is allowed.
+    /// Returns the variables after a step, which is shortened to the longest allowed one. The variables are clamped to their ranges.
     #[must_use]
     pub fn after(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
         let most = |one: &Variable| if one.is_log { LOG_STEP } else { STEP };
@@ -211,7 +211,7 @@ impl Variables {
     }
 }
 
-/// Least and largest variable with which a number lies within a range.
+/// Returns the least and the largest variable with which a number lies within a range.
 fn limits(number: f64, power: f64, is_log: bool, [least, most]: [f64; 2]) -> [f64; 2] {
     if !is_log {
         return [least - number, most - number];

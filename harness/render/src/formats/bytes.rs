@@ -1,19 +1,19 @@
-//! Numbers out of a file, little endian.
+//! Little-endian numbers read from the bytes of a file.
 
 use super::{LONGEST_FILE, Problem, Wrong};
 use glam::Vec3;
 
-/// A file.
+/// Bytes of a file, from which numbers are read by offset.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bytes<'a>(pub(super) &'a [u8]);
 
 impl<'a> Bytes<'a> {
-    /// Its length.
+    /// Returns the length of the file in bytes.
     pub(super) fn len(self) -> u64 {
         self.0.len() as u64
     }
 
-    /// Refuses a file that is shorter than its header.
+    /// Rejects a file that is shorter than its header.
     pub(super) fn header(self, needed: u64) -> Result<(), Wrong> {
         let got = self.len();
         if got < needed {
@@ -23,7 +23,7 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// Refuses a file that ends before `end`, and an `end` beyond what is read of any.
+    /// Rejects a file that ends before `end`, and an `end` beyond the largest length that is read.
     pub(super) fn length(self, end: u64) -> Result<(), Wrong> {
         let got = self.len();
         if end > LONGEST_FILE {
@@ -37,8 +37,8 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// Says that the file goes on where everything ends that its header tells of, or that it ends
-    /// before.
+    /// Returns a remark if the file goes on behind the end of everything that its header describes, or
+    /// ends before it.
     pub(super) fn remark_behind(self, end: u64) -> Option<String> {
         let got = self.len();
         if got < end {
@@ -51,7 +51,7 @@ impl<'a> Bytes<'a> {
         (more > 0).then(|| format!("warning: {more} bytes follow the end, byte {end}: not used"))
     }
 
-    /// The bytes at `offset`; 0 beyond the end, which callers have checked.
+    /// Returns the bytes at `offset`, or zeros beyond the end, which callers have checked.
     fn some<const N: usize>(self, offset: u64) -> [u8; N] {
         let start = usize::try_from(offset).unwrap_or(usize::MAX);
         self.0
@@ -73,7 +73,7 @@ impl<'a> Bytes<'a> {
         f32::from_le_bytes(self.some(offset))
     }
 
-    /// A place, refused if it is not finite or farther than 1e6 units along an axis.
+    /// Reads a position, and rejects one that is not finite or farther than 1e6 units along an axis.
     pub(super) fn position(self, offset: u64) -> Result<Vec3, Wrong> {
         let component = |axis: u64| {
             let value = self.f32(offset + 4 * axis);

@@ -1,10 +1,10 @@
-//! Strands behind their counts: USC-HairSalon (`.data`) and `CT2Hair` (`.bin`).
+//! Formats that store a count before each strand: USC-HairSalon (`.data`) and `CT2Hair` (`.bin`).
 //!
-//! Little endian: the number of strands as i32; per strand the number of its vertices as i32, then
-//! as many vertices. A vertex is three f32 in USC-HairSalon, whose unit is the metre. In `CT2Hair`,
-//! in millimetres, four f32 follow them, a normal or a colour and a label. Strands of one vertex
-//! are roots without hair. Some published strands have coordinates that are NaN, which the authors'
-//! readers drop, as does this one.
+//! Both are little endian and begin with the number of strands as i32. Each strand is the number of
+//! its vertices as i32, followed by the vertices. A vertex is three f32 in USC-HairSalon, whose unit
+//! is the metre. In `CT2Hair`, in millimetres, four f32 follow them: a normal or a colour, and a
+//! label. Strands of one vertex are roots without hair. Some published strands have NaN coordinates;
+//! this reader drops such strands, as the authors' readers do.
 
 use super::bytes::Bytes;
 use super::raw::{Raw, RawStrand};
@@ -26,15 +26,15 @@ pub(super) const CT2HAIR: Layout = Layout {
     scale: 0.1,
 };
 
-/// Whether the counts lead to the end of the file.
+/// Returns true if the counts lead to the end of the file.
 pub(super) fn fits(bytes: Bytes<'_>, layout: Layout) -> bool {
     let strands = u64::from(bytes.u32(0));
     let possible = strands > 0 && strands <= bytes.len() / 4;
     possible && walk(bytes, layout, |_, _, _| ()).is_ok_and(|end| end == bytes.len())
 }
 
-/// Visits every strand, by its number, the offset of its first vertex and how many there are, and
-/// returns where the last ends.
+/// Visits every strand, by its number, the offset of its first vertex and its count of vertices, and
+/// returns where the last strand ends.
 fn walk(
     bytes: Bytes<'_>,
     layout: Layout,
@@ -55,7 +55,7 @@ fn walk(
     Ok(offset)
 }
 
-/// The file, checked.
+/// Checks the file, and returns its strands.
 pub(super) fn parse(bytes: Bytes<'_>, layout: Layout) -> Result<Raw<'_>, Wrong> {
     bytes.header(4)?;
     let count = bytes.u32(0);

@@ -1,11 +1,11 @@
 //! cyHair (`.hair`), after Cem Yuksel's `cyHairFile.h`.
 //!
-//! A header of 128 bytes: `HAIR`, then strands, points, flags and default segments as u32, default
-//! thickness, transparency and colour as f32, and 88 bytes of text. Then, where flagged: segments
-//! per strand as u16, three f32 per point, and per point a thickness, a transparency, and three f32
-//! of colour. The format's page has up to 65,536 segments per strand; u16 holds 65,535. Thickness
-//! is a diameter. `LuxCore` adds a flag for two f32 of texture coordinates per point, behind all
-//! else.
+//! A header of 128 bytes holds `HAIR`, then strands, points, flags and default segments as u32, default
+//! thickness, transparency and colour as f32, and 88 bytes of text. Arrays follow where flagged:
+//! segments per strand as u16, three f32 per point, and per point a thickness, a transparency, and
+//! three f32 of colour. The format's page has up to 65,536 segments per strand; u16 holds 65,535.
+//! Thickness is a diameter. `LuxCore` adds a flag for two f32 of texture coordinates per point, behind
+//! all else.
 
 use super::bytes::Bytes;
 use super::raw::{Raw, RawStrand};
@@ -21,7 +21,7 @@ const TRANSPARENCY: u32 = 8;
 const COLOURS: u32 = 16;
 const UVS: u32 = 32;
 
-/// The file, checked; thickness only if it is wanted.
+/// Checks the file and returns its strands, with thickness only if it is wanted.
 pub(super) fn parse(bytes: Bytes<'_>, wants_thickness: bool) -> Result<Raw<'_>, Wrong> {
     bytes.header(HEADER)?;
     let signature = bytes.u32(0).to_le_bytes();
@@ -64,7 +64,7 @@ pub(super) fn parse(bytes: Bytes<'_>, wants_thickness: bool) -> Result<Raw<'_>, 
         ));
     }
 
-    // Where arrays begin, and the file's length.
+    // Offsets at which arrays begin, and the file's length.
     let mut end = HEADER;
     let mut array = |flag: u32, bytes: u64, count: u32| {
         let start = end;

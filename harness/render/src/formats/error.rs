@@ -1,57 +1,57 @@
-//! Why a file of hair, or of a head, was refused.
+//! Errors of files of hair and of heads, which state why a file was rejected.
 
 use crate::geometry::GeometryError;
 use core::fmt;
 use std::io;
 use std::path::PathBuf;
 
-/// A file of hair or of a head was refused: one line with its name, the byte that shows the
-/// problem, and the numbers that disagree.
+/// Error of a file of hair or of a head that was rejected. Its one line has the name, the byte that
+/// shows the problem, and the numbers that disagree.
 #[derive(Debug)]
 pub struct ImportError {
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
-    /// The byte, counted from 0, if the problem is in one.
+    /// Offset of the byte that shows the problem, counted from 0, if there is one.
     pub offset: Option<u64>,
-    /// The problem.
+    /// Problem with the file.
     pub problem: Problem,
 }
 
-/// Problem with a file of hair.
+/// Problem with a file of hair or of a head, with the numbers that disagree.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Problem {
-    /// Neither its content nor its name is of a known format.
+    /// Neither the content nor the name of the file is of a known format.
     Unknown,
-    /// It cannot be read.
+    /// The file cannot be read.
     Read(io::Error),
-    /// It is longer than any that is read.
+    /// The file is longer than any that is read.
     TooLong {
-        /// The most bytes.
+        /// Largest number of bytes.
         most: u64,
     },
     /// An option is not finite, not above 0, or out of all reason.
     Option {
-        /// Which.
+        /// Name of the option.
         name: &'static str,
         /// Value given.
         value: f32,
     },
-    /// It is shorter than its header.
+    /// The file is shorter than its header.
     Header {
         /// Bytes of a header.
         needed: u64,
         /// Bytes of the file.
         got: u64,
     },
-    /// It does not begin as files of its format do.
+    /// The file does not begin as files of its format do.
     Signature {
-        /// How they begin.
+        /// Beginning of files of the format.
         expected: &'static str,
         /// The first four bytes.
         got: [u8; 4],
     },
-    /// It has no points, or arrays that the format does not know.
+    /// The file has no points, or arrays that the format does not know.
     Flags {
         /// Requirement on the flags.
         expected: &'static str,
@@ -65,23 +65,23 @@ pub enum Problem {
         /// Number in the file.
         got: u32,
     },
-    /// The points that strands need, and those that there are, differ.
+    /// The number of points that the strands need differs from the number in the file.
     Points {
-        /// Segments and one more per strand.
+        /// Segments of all strands, and one more per strand.
         needed: u64,
         /// Points according to the header.
         got: u64,
     },
     /// The arrays take more than the file may be long.
     TooLarge {
-        /// Their bytes.
+        /// Bytes of the arrays.
         bytes: u64,
-        /// The most bytes.
+        /// Largest number of bytes.
         most: u64,
     },
-    /// The file is shorter than what its header says of what is needed.
+    /// The file is shorter than the needed part of what its header describes.
     Length {
-        /// According to the header.
+        /// Length according to the header.
         expected: u64,
         /// Length of the file.
         got: u64,
@@ -107,7 +107,7 @@ pub enum Problem {
     NoRadius,
     /// The vertices of a strand do not fit in the file.
     Strand {
-        /// The strand, from 0.
+        /// Number of the strand, from 0.
         strand: u32,
         /// Offset at which its vertices would end.
         end: u64,
@@ -116,11 +116,11 @@ pub enum Problem {
     },
     /// Text, or a header of text, is not as its format has it.
     Text(String),
-    /// Scaled, a strand is too large.
+    /// A strand is too large once it is scaled.
     Geometry {
-        /// The strand of the file, from 0.
+        /// Number of the strand in the file, from 0.
         strand: usize,
-        /// Problem with it.
+        /// Problem with the strand.
         error: GeometryError,
     },
     /// The scene is so wide that no thickness of its strands would show in it.
@@ -129,7 +129,7 @@ pub enum Problem {
         size: f32,
         /// Median length of the strands, in centimetres.
         length: f32,
-        /// The strand of the file that is farthest from the others, from 0.
+        /// Number, in the file, of the strand that is farthest from the others, from 0.
         strand: usize,
     },
 }

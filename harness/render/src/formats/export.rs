@@ -1,4 +1,4 @@
-//! Files of hair for other programs.
+//! Files of hair that are written for other programs.
 
 use super::write_mitsuba;
 use crate::geometry::Strands;
@@ -7,12 +7,12 @@ use std::io::{self, Write};
 use std::path::Path;
 
 /// Writes strands in the format of the name's ending, in its unit: `.hair` (cyHair), `.data`
-/// (USC-HairSalon), `.bin` (`CT2Hair`), `.ply`; with any other ending Mitsuba's text. Without
+/// (USC-HairSalon), `.bin` (`CT2Hair`) or `.ply`, and with any other ending Mitsuba's text. Without
 /// smoothing, [`import`](super::import) reads the same nodes.
 ///
 /// # Errors
 ///
-/// If it cannot be written, or has more strands or nodes than the format counts.
+/// Returns an error if the strands cannot be written, or are more, or have more nodes, than the format counts.
 pub fn write_hair(path: &Path, strands: &Strands, to: impl Write) -> io::Result<()> {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     match ending.to_lowercase().as_str() {
@@ -24,7 +24,7 @@ pub fn write_hair(path: &Path, strands: &Strands, to: impl Write) -> io::Result<
     }
 }
 
-/// Number of nodes of each strand.
+/// Returns the number of nodes of each strand.
 fn counts(strands: &Strands) -> impl Iterator<Item = usize> {
     (0..)
         .take(strands.strands())
@@ -36,7 +36,7 @@ fn nodes(strands: &Strands) -> impl Iterator<Item = (Vec3, f32)> {
     nodes.map(|node| (strands.node_position(node), strands.node_radius(node)))
 }
 
-/// A count as the format has it.
+/// Converts a count to the type that the format has for it.
 fn count<T: TryFrom<usize>>(count: usize) -> io::Result<T> {
     let too_many = |_| io::Error::new(io::ErrorKind::InvalidInput, "the format counts no further");
     T::try_from(count).map_err(too_many)
@@ -71,7 +71,7 @@ fn cyhair(strands: &Strands, mut to: impl Write) -> io::Result<()> {
     Ok(())
 }
 
-/// `beside` numbers that are 0 follow each place.
+/// Writes the strands behind their counts. Zeros follow each position, `beside` of them.
 fn counted(strands: &Strands, scale: f32, beside: usize, mut to: impl Write) -> io::Result<()> {
     to.write_all(&count::<i32>(strands.strands())?.to_le_bytes())?;
     let mut nodes = nodes(strands);

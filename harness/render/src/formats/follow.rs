@@ -1,15 +1,15 @@
-//! Strands beside those of a file: files of hair for games have guides, and the game adds the rest.
+//! Strands added beside those of a file, because files of hair for games hold guides, and the game adds the rest.
 
 use crate::lights::uniform_direction;
 use glam::Vec3;
 use hairis_instruments::sequence::{Independent, XiSource as _};
 
-/// Number of strands added beside each, and their distance.
+/// Number of strands that are added beside each strand of a file, and their distance from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Follow {
-    /// Strands beside each strand of the file.
+    /// Strands added beside each strand of the file.
     pub strands: u32,
-    /// Their largest distance from it, in centimetres.
+    /// Largest distance of added strands from their guide, in centimetres.
     pub spread: f32,
 }
 
@@ -23,7 +23,8 @@ impl Default for Follow {
 }
 
 impl Follow {
-    /// The nodes of all strands about one: itself first. A strand depends on its number, that of its guide, and the guide.
+    /// Returns the nodes of all strands about a guide, the guide first. A strand depends on its number, on the number of the guide, and on
+    /// the guide.
     pub(super) fn about(
         self,
         guide: usize,
@@ -50,7 +51,7 @@ impl Follow {
     }
 }
 
-/// A point of the unit ball, uniform for uniform numbers.
+/// Maps uniform numbers to a point that is uniform in the unit ball.
 fn in_ball([x, y, radius]: [f32; 3]) -> Vec3 {
     libm::cbrtf(radius) * uniform_direction([x, y])
 }

@@ -1,19 +1,19 @@
-//! The formats, and which of them a file has.
+//! Formats of hair, and the rules that decide which of them a file has.
 
 use super::bytes::Bytes;
 use super::raw::Raw;
 use super::{Problem, Wrong, counted, cyhair, mitsuba, monohair, ply, ply_strands, tressfx};
 use std::path::Path;
 
-/// A format of hair.
+/// Format of a file of hair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     CyHair,
     MonoHair,
     TressFx,
-    /// USC-HairSalon: counted strands of places.
+    /// USC-HairSalon: counted strands of positions.
     HairSalon,
-    /// `CT2Hair`: the same, with a normal and a label beside each place.
+    /// `CT2Hair`: counted strands, with a normal and a label beside each position.
     Ct2Hair,
     Ply,
     MitsubaText,
@@ -32,8 +32,8 @@ impl Format {
         Self::MitsubaBinary,
     ];
 
-    /// Name in messages, and the endings that its files have; the formats of an ending in the order
-    /// in which damaged files are taken for them.
+    /// Returns the name in messages, and the endings that files of the format have. Formats that share an
+    /// ending are in the order in which damaged files are taken for them.
     fn words(self) -> (&'static str, &'static [&'static str]) {
         match self {
             Self::CyHair => ("cyHair", &["hair"]),
@@ -47,7 +47,7 @@ impl Format {
         }
     }
 
-    /// The format of the content, or else the one of the name's ending.
+    /// Returns the format of the content, or else the format of the name's ending.
     pub(super) fn of(bytes: Bytes<'_>, path: &Path) -> Result<Self, Problem> {
         let ending = ending(path);
         let named = |format: &&Self| format.words().1.contains(&ending.as_str());
@@ -65,7 +65,7 @@ impl Format {
             .ok_or(Problem::Unknown)
     }
 
-    /// Whether the content is of the format, as far as its beginning or its counts show.
+    /// Returns true if the content is of the format, as far as its beginning or its counts show.
     fn fits(self, bytes: Bytes<'_>) -> bool {
         match self {
             Self::CyHair => bytes.0.starts_with(b"HAIR"),
@@ -79,7 +79,7 @@ impl Format {
         }
     }
 
-    /// The strands, checked; their radii only if they are wanted.
+    /// Checks the file and returns its strands, with radii only if they are wanted.
     pub(super) fn parse(self, bytes: Bytes<'_>, radii: bool) -> Result<Raw<'_>, Wrong> {
         match self {
             Self::CyHair => cyhair::parse(bytes, radii),
@@ -93,7 +93,7 @@ impl Format {
         }
     }
 
-    /// Says that the name promises something else.
+    /// Returns a remark if the ending of the name does not belong to the format.
     pub(super) fn remark(self, path: &Path) -> Option<String> {
         let ending = ending(path);
         let (name, endings) = self.words();
@@ -105,7 +105,7 @@ impl Format {
     }
 }
 
-/// The ending of a name, in small letters.
+/// Returns the ending of a name in lower case.
 fn ending(path: &Path) -> String {
     let ending = path.extension().unwrap_or_default();
     ending.to_string_lossy().to_lowercase()

@@ -1,4 +1,4 @@
-//! Heads: meshes of PLY and Wavefront OBJ.
+//! Heads as meshes, read from PLY and Wavefront OBJ.
 
 use super::bytes::Bytes;
 use super::ply::{self, Ply};
@@ -9,12 +9,12 @@ use crate::part::digest;
 use glam::Vec3;
 use std::path::Path;
 
-/// How a mesh is read.
+/// Options by which the mesh of a head is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Head {
     /// Centimetres per unit of the file.
     pub scale: f32,
-    /// The axis that points up.
+    /// Axis of the file that points up.
     pub up: Up,
 }
 
@@ -23,18 +23,18 @@ pub struct Head {
 ///
 /// # Errors
 ///
-/// If the file cannot be read, or anything that is needed is not as its format has it; see
-/// [`Problem`].
+/// Returns an error if the file cannot be read, or if anything that is needed is not as its format
+/// has it; see [`Problem`].
 pub fn import_head(path: &Path, options: &Head) -> Result<(Mesh, u64), ImportError> {
     let data = read(path)?;
     Ok((import_head_bytes(path, &data, options)?, digest(&data)))
 }
 
-/// Reads what a file of this name holds.
+/// Reads a mesh from the content of a file with this name.
 ///
 /// # Errors
 ///
-/// See [`import_head`].
+/// Returns the errors of [`import_head`], except those of reading the file.
 pub fn import_head_bytes(path: &Path, data: &[u8], options: &Head) -> Result<Mesh, ImportError> {
     let refuse = |offset, problem| ImportError {
         path: path.to_owned(),
@@ -56,7 +56,7 @@ pub fn import_head_bytes(path: &Path, data: &[u8], options: &Head) -> Result<Mes
     Mesh::new(places, triangles).map_err(|problem| refuse(None, Problem::Text(problem)))
 }
 
-/// Places, and triangles of their numbers.
+/// Positions, and triangles as indices into them.
 type Parts = (Vec<Vec3>, Vec<[u32; 3]>);
 
 fn of_ply(bytes: Bytes<'_>) -> Result<Parts, Wrong> {
@@ -89,17 +89,17 @@ fn of_ply(bytes: Bytes<'_>) -> Result<Parts, Wrong> {
     Ok((places, triangles))
 }
 
-/// Wavefront OBJ: of its lines `v x y z` and `f a b c ...` alone, where `a` is a number of a
-/// vertex, from 1 or back from -1, and may have others behind slashes.
+/// Reads Wavefront OBJ, and of its lines only `v x y z` and `f a b c ...`. Each `a` is the number of a
+/// vertex, from 1 or back from -1, and may have other numbers behind slashes.
 ///
-/// Own code: `tobj` refuses meshes for normals and colours, which are not used, and names no line.
+/// Own code, because `tobj` rejects meshes for normals and colours, which are not used, and names no line.
 fn of_obj(data: &[u8]) -> Result<Parts, Wrong> {
     let (mut places, mut triangles) = (Vec::new(), Vec::new());
     let mut offset = 0;
     for line in data.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
         let start = offset;
         offset += line.len() as u64;
-        // Names may be in any encoding.
+        // Decode lossily, because names may be in any encoding.
         let line = String::from_utf8_lossy(line);
         let line = line.trim_start_matches('\u{feff}');
         let mut words = line.split_ascii_whitespace();
@@ -138,7 +138,7 @@ fn of_obj(data: &[u8]) -> Result<Parts, Wrong> {
     Ok((places, triangles))
 }
 
-/// A polygon as triangles that share its first corner.
+/// Splits a polygon into triangles that share its first corner.
 fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let pairs = corners.windows(2).skip(1);
     pairs.map(|pair| [corners[0], pair[0], pair[1]])

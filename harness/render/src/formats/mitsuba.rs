@@ -1,9 +1,10 @@
-//! Mitsuba's hair: text for `linearcurve` and `bsplinecurve`, and what its earlier versions had for
-//! `hair`.
+//! Hair of Mitsuba: text for `linearcurve` and `bsplinecurve`, and the binary form that its earlier versions
+//! had for `hair`.
 //!
-//! Text: a line `x y z radius` per node, and an empty line between strands. Mitsuba 0.6 and 2 have
-//! `x y z` as well, and lines of `#` between strands. Binary, little endian: `BINARY_HAIR`, the
-//! number of nodes as u32, three f32 per node, and an infinity before those that begin a strand.
+//! Text has a line `x y z radius` per node, and an empty line between strands. Mitsuba 0.6 and 2 also
+//! have lines of `x y z`, and lines of `#` between strands. The binary form is little endian:
+//! `BINARY_HAIR`, the number of nodes as u32, then three f32 per node, after an infinity for each node
+//! that begins a strand.
 
 use super::bytes::Bytes;
 use super::raw::{Raw, RawStrand};
@@ -21,7 +22,7 @@ pub(super) fn is_binary(bytes: Bytes<'_>) -> bool {
     bytes.0.starts_with(SIGNATURE)
 }
 
-/// Whether the first line that is neither empty nor a comment has three or four numbers.
+/// Returns true if the first line that is neither empty nor a comment has three or four numbers.
 pub(super) fn is_text(bytes: Bytes<'_>) -> bool {
     let mut nodes = lines(bytes).filter(|(_, line)| !is_between(line));
     nodes.next().is_some_and(|(_, line)| {
@@ -30,7 +31,7 @@ pub(super) fn is_text(bytes: Bytes<'_>) -> bool {
     })
 }
 
-/// Lines and where they begin. Lines that are not text have no numbers.
+/// Iterates over lines and the offsets where they begin. Lines that are not text have no numbers.
 fn lines(bytes: Bytes<'_>) -> impl Iterator<Item = (u64, &str)> {
     let mut start = 0;
     let pieces = bytes
@@ -49,7 +50,7 @@ fn lines(bytes: Bytes<'_>) -> impl Iterator<Item = (u64, &str)> {
     })
 }
 
-/// Whether a line stands between strands.
+/// Returns true if a line stands between strands.
 fn is_between(line: &str) -> bool {
     line.is_empty() || line.starts_with('#')
 }
@@ -58,7 +59,7 @@ fn numbers(line: &str) -> impl Iterator<Item = Option<f32>> {
     line.split_ascii_whitespace().map(|word| word.parse().ok())
 }
 
-/// Strands of collected nodes.
+/// Makes strands from collected nodes.
 fn collected<'a>(
     nodes: Vec<(Vec3, f32)>,
     strands: Vec<(u64, Range<usize>)>,
@@ -81,13 +82,13 @@ fn collected<'a>(
     }
 }
 
-/// The text, checked; radii only if they are wanted.
+/// Checks the text and returns its strands, with radii only if they are wanted.
 pub(super) fn parse_text(bytes: Bytes<'_>, wants_radii: bool) -> Result<Raw<'_>, Wrong> {
     let mut nodes: Vec<(Vec3, f32)> = Vec::new();
     let mut strands: Vec<(u64, Range<usize>)> = Vec::new();
     let (mut columns, mut radii) = (None, None);
     let mut goes_on = false;
-    // An empty line between the two bytes that end a line on some systems is none.
+    // Skip the empty line that appears between the two bytes of a line end on some systems.
     let lines = lines(bytes).filter(|&(start, line)| {
         let at = usize::try_from(start).unwrap_or(usize::MAX);
         !(line.is_empty() && at > 0 && bytes.0[at - 1..].starts_with(b"\r\n"))
@@ -132,7 +133,7 @@ pub(super) fn parse_text(bytes: Bytes<'_>, wants_radii: bool) -> Result<Raw<'_>,
     Ok(collected(nodes, strands, radii, Vec::new()))
 }
 
-/// The binary form, checked.
+/// Checks the binary form and returns its strands.
 pub(super) fn parse_binary(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
     bytes.header(HEADER)?;
     let count = bytes.u32(HEADER - 4);
@@ -146,7 +147,7 @@ pub(super) fn parse_binary(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
     for node in 0..count as usize {
         let begins = bytes.f32(offset).is_infinite();
         offset += if begins { 4 } else { 0 };
-        // Those behind it take this much at least.
+        // The nodes that follow take at least this much.
         bytes.length(offset + 12 * u64::from(count).saturating_sub(node as u64))?;
         if begins || strands.is_empty() {
             strands.push((offset, node..node));
@@ -162,11 +163,11 @@ pub(super) fn parse_binary(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
 }
 
 /// Writes strands as Mitsuba reads them: a line `x y z radius` per node, and an empty line after each strand. Numbers have
-/// as many digits as it takes to read back the same.
+/// as many digits as are needed to read back the same values.
 ///
 /// # Errors
 ///
-/// If it cannot be written.
+/// Returns an error if the text cannot be written.
 pub fn write_mitsuba(strands: &Strands, mut to: impl Write) -> io::Result<()> {
     for strand in (0..).take(strands.strands()) {
         for node in strands.nodes_of(strand) {

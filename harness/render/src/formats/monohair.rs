@@ -1,14 +1,14 @@
-//! `MonoHair` (`.hair`).
+//! Format of `MonoHair` (`.hair`), which has no signature.
 //!
-//! Little endian, without a signature: strands and points as u32, points per strand as u16, and
-//! three f32 per point. The unit is the metre.
+//! Files are little endian: strands and points as u32, points per strand as u16, and three f32 per
+//! point. The unit is the metre.
 
 use super::Wrong;
 use super::bytes::Bytes;
 use super::raw::{Raw, RawStrand};
 
-/// Whether the points of the strands add up to those of the header. What follows them may be short
-/// or long.
+/// Returns true if the points of the strands add up to the count in the header. The data that follow
+/// may be too short or too long.
 pub(super) fn fits(bytes: Bytes<'_>) -> bool {
     let (strands, points) = (u64::from(bytes.u32(0)), u64::from(bytes.u32(4)));
     let counted = 8 + 2 * strands;
@@ -21,7 +21,7 @@ pub(super) fn fits(bytes: Bytes<'_>) -> bool {
             == points
 }
 
-/// The file, checked.
+/// Checks the file and returns its strands.
 pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
     let (strands, points) = (u64::from(bytes.u32(0)), u64::from(bytes.u32(4)));
     let first = 8 + 2 * strands;

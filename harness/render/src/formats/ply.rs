@@ -1,13 +1,14 @@
 //! PLY, the Stanford triangle format: tables of numbers under a header of text, as text or binary
 //! in either byte order.
 //!
-//! Own code: `ply-rs-bw` reads no number such as `.5`, `1.` or `nan`, no header with a comment that
-//! is not UTF-8 and no empty line, which files in use have, and names no byte of what it refuses.
+//! Own code, because `ply-rs-bw` reads no number such as `.5`, `1.` or `nan`, no header with a comment
+//! that is not UTF-8 and no empty line, all of which occur in files in use, and names no byte that it
+//! rejects.
 
 use super::bytes::Bytes;
 use super::{Problem, Wrong};
 
-/// Type of a number.
+/// Type of a number in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Number {
     I8,
@@ -44,7 +45,7 @@ impl Number {
         }
     }
 
-    /// The number in bytes, the lowest first.
+    /// Converts bytes, the lowest first, to the number.
     fn value(self, bytes: [u8; 8]) -> f64 {
         let [a, b, c, d, ..] = bytes;
         match self {
@@ -67,7 +68,7 @@ enum Encoding {
     Big,
 }
 
-/// A column of a table.
+/// Column of a table, of numbers or of lists.
 #[derive(Clone, Debug)]
 pub(super) struct Property {
     pub(super) name: String,
@@ -82,7 +83,7 @@ impl Property {
     }
 }
 
-/// A table.
+/// Table of rows with the same columns.
 #[derive(Clone, Debug)]
 pub(super) struct Element {
     pub(super) name: String,
@@ -91,7 +92,7 @@ pub(super) struct Element {
 }
 
 impl Element {
-    /// The place of the first column that has one of these names, and whose rows are lists or not.
+    /// Returns the index of the first column that has one of these names, and whose rows are lists or not.
     pub(super) fn column(&self, names: &[&str], lists: bool) -> Option<usize> {
         let places = names.iter().map(|name| {
             let mut properties = self.properties.iter();
@@ -101,7 +102,7 @@ impl Element {
     }
 }
 
-/// A file, of which the header is read.
+/// PLY file whose header is read.
 #[derive(Clone, Debug)]
 pub(super) struct Ply<'a> {
     bytes: Bytes<'a>,
@@ -110,7 +111,7 @@ pub(super) struct Ply<'a> {
     body: u64,
 }
 
-/// The row of a table: per column its number, or the numbers of its list.
+/// Row of a table: for each column its number, or the numbers of its list.
 #[derive(Debug, Default)]
 pub(super) struct Row {
     pub(super) offset: u64,
@@ -122,7 +123,7 @@ impl Row {
         self.columns[column].first().copied().unwrap_or(f64::NAN)
     }
 
-    /// A number that counts or names something below `limit`.
+    /// Converts a number that counts or indexes something to an integer below `limit`.
     pub(super) fn index(&self, value: f64, limit: u64) -> Result<u32, Wrong> {
         #[expect(
             clippy::cast_possible_truncation,
@@ -145,7 +146,7 @@ pub(super) fn fits(bytes: Bytes<'_>) -> bool {
 }
 
 impl<'a> Ply<'a> {
-    /// Reads the header.
+    /// Reads the header of a file.
     pub(super) fn new(bytes: Bytes<'a>) -> Result<Self, Wrong> {
         let mut lines = Lines { bytes, at: 0 };
         let (mut encoding, mut elements) = (None, Vec::<Element>::new());
@@ -195,7 +196,7 @@ impl<'a> Ply<'a> {
         Ok(ply)
     }
 
-    /// Refuses tables that take more bytes than there are, before anything is made for their rows.
+    /// Rejects tables that take more bytes than there are, before memory is taken for their rows.
     fn check_counts(&self) -> Result<(), Wrong> {
         let left = self.bytes.len() - self.body;
         for Element {
@@ -219,7 +220,7 @@ impl<'a> Ply<'a> {
         Ok(())
     }
 
-    /// Visits all rows of all tables, and returns where the last ends.
+    /// Visits all rows of all tables, and returns where the last row ends.
     pub(super) fn rows(
         &self,
         mut visit: impl FnMut(&Element, &Row) -> Result<(), Wrong>,
@@ -254,7 +255,7 @@ impl<'a> Ply<'a> {
     }
 }
 
-/// A column by the words of its line.
+/// Parses a column from the words of its line.
 fn property(words: &[&str]) -> Option<Property> {
     let (count, number, name) = match words {
         ["property", "list", count, number, name] => (Some(Number::of(count)?), number, name),
@@ -268,7 +269,7 @@ fn property(words: &[&str]) -> Option<Property> {
     })
 }
 
-/// Lines from a place on, without what ends them: a line feed, a carriage return, or both.
+/// Lines from an offset on, without their ends: a line feed, a carriage return, or both.
 struct Lines<'a> {
     bytes: Bytes<'a>,
     at: u64,
@@ -295,17 +296,17 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// The numbers of the tables, from a place on.
+/// Numbers of the tables, read from an offset on.
 struct Source<'a> {
     bytes: Bytes<'a>,
     encoding: Encoding,
     at: u64,
-    /// Rest of a line of text.
+    /// Unread words of a line of text.
     line: std::vec::IntoIter<&'a [u8]>,
 }
 
 impl Source<'_> {
-    /// Reads a row. A problem says what is wrong with it.
+    /// Reads a row. An error states what is wrong with the row.
     fn row(&mut self, element: &Element, row: &mut Row) -> Result<(), (u64, String)> {
         if self.encoding == Encoding::Text {
             let bytes = self.bytes;
@@ -328,7 +329,7 @@ impl Source<'_> {
                 None => 1.0,
                 Some(number) => self.number(number, row.offset)?,
             };
-            // Whole, and no longer than what is left.
+            // The length must be whole, and no larger than the bytes that are left.
             let left = self.bytes.len() - row.offset;
             if !(0.0..=left as f64).contains(&length) || length.fract() != 0.0 {
                 return Err((row.offset, format!("has a list of {length} numbers")));

@@ -1,7 +1,7 @@
-//! Strands in PLY, which has no standard for them: as tools write them.
+//! Strands in PLY, as tools write them: the format has no standard for strands.
 //!
 //! Nodes are the rows of `vertex`: `x y z`, and `radius`, or a diameter as `thickness` or `width`.
-//! What joins them is, in this order:
+//! The first of the following that a file has joins them:
 //!
 //! 1. a table with a count per strand, as hairutil's `strand` with `nsegs`; nodes then stand in order;
 //! 2. a table of lists of vertices, such as `strand`, `line` or `polyline`;
@@ -14,7 +14,7 @@ use super::raw::{Raw, RawStrand};
 use super::{Problem, Wrong};
 use glam::Vec3;
 
-/// Columns that count a strand's segments, or its nodes.
+/// Columns that count the segments of a strand; [`NODES`] counts its nodes.
 const SEGMENTS: [&str; 4] = ["nsegs", "segments", "num_segments", "segment_count"];
 const NODES: [&str; 9] = [
     "nverts",
@@ -27,7 +27,7 @@ const NODES: [&str; 9] = [
     "count",
     "vertices",
 ];
-/// Columns of lists of vertices.
+/// Columns that hold lists of vertices.
 const LISTS: [&str; 6] = [
     "vertex_indices",
     "vertex_index",
@@ -36,14 +36,14 @@ const LISTS: [&str; 6] = [
     "points",
     "point_indices",
 ];
-/// Columns of the vertices of an edge.
+/// Columns that hold the two vertices of an edge.
 const PAIRS: [[&str; 2]; 4] = [
     ["vertex1", "vertex2"],
     ["v1", "v2"],
     ["vertex_1", "vertex_2"],
     ["start", "end"],
 ];
-/// Columns of vertices that number strands.
+/// Columns of `vertex` that number strands.
 const IDS: [&str; 6] = [
     "strand_id",
     "curve_id",
@@ -56,14 +56,14 @@ const IDS: [&str; 6] = [
 /// Rule that joins nodes to strands.
 #[derive(Clone, Copy)]
 enum Join {
-    /// Nodes in order; a column has their number, less this.
+    /// Nodes in order; a column has their number, less this one.
     Counts(usize, u32),
     Lists(usize),
     Pairs([usize; 2]),
     Ids(usize),
 }
 
-/// The table that joins nodes, and how.
+/// Returns the index of the table that joins nodes, with the rule.
 fn join(ply: &Ply<'_>) -> Option<(usize, Join)> {
     let vertex = |element: &Element| element.name == "vertex";
     let beside = || {
@@ -105,7 +105,7 @@ fn join(ply: &Ply<'_>) -> Option<(usize, Join)> {
     counts.or_else(lists).or_else(pairs).or_else(ids)
 }
 
-/// Columns of the nodes.
+/// Columns of the position and the radius of nodes.
 pub(super) struct Vertices {
     place: [usize; 3],
     radius: Option<(usize, f32)>,
@@ -133,7 +133,7 @@ impl Vertices {
         Ok((vertex, columns))
     }
 
-    /// The place of a vertex.
+    /// Reads the position of a vertex.
     pub(super) fn place(&self, row: &Row) -> Result<Vec3, Wrong> {
         #[expect(clippy::cast_possible_truncation, reason = "rounded to the nearest")]
         let place = Vec3::from(self.place.map(|column| row.number(column) as f32));
@@ -148,7 +148,7 @@ impl Vertices {
     }
 }
 
-/// The file, checked; radii only if they are wanted.
+/// Checks the file and returns its strands, with radii only if they are wanted.
 pub(super) fn parse(bytes: Bytes<'_>, wants_radii: bool) -> Result<Raw<'_>, Wrong> {
     let ply = Ply::new(bytes)?;
     let (vertex, mut columns) = Vertices::new(&ply)?;
@@ -218,15 +218,15 @@ pub(super) fn parse(bytes: Bytes<'_>, wants_radii: bool) -> Result<Raw<'_>, Wron
     })
 }
 
-/// Strands as they are joined.
+/// Strands while they are joined.
 #[derive(Default)]
 struct Joined {
     /// First node of each strand and the end of the last, in the order of nodes.
     firsts: Vec<u32>,
-    /// The order of nodes, if it is not that of the file.
+    /// Order of nodes, if it is not that of the file.
     order: Vec<u32>,
     in_order: bool,
-    /// Neighbours of each node, as their number and one more; 0 for none.
+    /// Neighbours of each node, as their number plus one; 0 for none.
     neighbours: Vec<[u32; 2]>,
     id: Option<f64>,
     nodes: u32,
@@ -313,7 +313,7 @@ impl Joined {
         Ok((self.firsts, order))
     }
 
-    /// Chains of edges, from their ends in the order of these, then what is left of closed ones.
+    /// Follows chains of edges, first from their ends in the order of the ends, then through what is left of closed chains.
     fn follow_edges(&mut self) {
         self.firsts = vec![0];
         let mut seen = vec![false; self.neighbours.len()];

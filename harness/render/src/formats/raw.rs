@@ -1,27 +1,27 @@
-//! Strands as a file has them, and what becomes of them.
+//! Strands as a file has them, and the steps that make hair of them.
 
 use super::{Curve, Import, Imported, Problem, Wrong};
 use crate::geometry::{Basis, Builder, Flattening, Groom, Spline, Strands};
 use crate::tree;
 use glam::Vec3;
 
-/// More dropped strands or nodes than this part are a warning.
+/// Share of dropped strands or nodes above which a remark is a warning.
 const MANY: f64 = 0.01;
-/// Radii above this part of the length of their strand are a warning.
+/// Ratio of radius to length of a strand above which there is a warning.
 const THICK: f32 = 0.1;
-/// Hair of another extent in centimetres is likely to be in another unit.
+/// Usual extents of hair in centimetres; hair of another extent is likely to be in another unit.
 const EXTENTS: core::ops::RangeInclusive<f32> = 1.0..=1000.0;
-/// Spans between nodes become at most 2^4 segments ...
+/// Largest number of halvings of a span between nodes, which gives at most 2^4 segments ...
 const HALVINGS: i32 = 4;
-/// ... and at most so many that hair takes no more than this many times the bytes of the file ...
+/// ... and fewer if the hair would take more than this many times the bytes of the file ...
 const GROWTH: u64 = 64;
-/// ... where a node takes this many: 16, while their vector grows to twice that, and 12 for its
+/// ... where a node takes this many bytes: 16, while their vector grows to twice that, and 12 for its
 /// tangent.
 const NODE_BYTES: u64 = 2 * 16 + 12;
 
-/// Strands as a file has them: places in its units, and where in it they are.
+/// Strands as a file has them: positions in its units, and offsets in the file.
 pub(super) struct Raw<'a> {
-    /// Centimetres per unit, if nothing else is said.
+    /// Centimetres per unit, unless the options state another scale.
     pub(super) scale: f32,
     pub(super) strands: Box<dyn Iterator<Item = RawStrand<'a>> + 'a>,
     /// Number of strands.
@@ -30,13 +30,13 @@ pub(super) struct Raw<'a> {
     pub(super) nodes: u64,
     /// Offset of the radii in the file, if it has any that are wanted.
     pub(super) radii: Option<u64>,
-    /// Lines for the log.
+    /// Lines for the log that are known so far.
     pub(super) remarks: Vec<String>,
 }
 
-/// Nodes from root to tip: place, radius, and offset in the file. Radii are 0 if the file has none.
+/// Nodes from root to tip: position, radius, and offset in the file. Radii are 0 if the file has none.
 pub(super) struct RawStrand<'a> {
-    /// The strand of the file, from 0.
+    /// Number of the strand in the file, from 0.
     pub(super) number: usize,
     pub(super) offset: u64,
     pub(super) nodes: Box<dyn Iterator<Item = (Vec3, f32)> + 'a>,
@@ -56,7 +56,7 @@ struct Seen {
 }
 
 impl Raw<'_> {
-    /// Scaled, turned, smoothed and checked. The file has `length` bytes.
+    /// Scales, turns, smooths and checks the strands of a file of `length` bytes.
     pub(super) fn build(self, options: &Import, length: u64) -> Result<Imported, Wrong> {
         let scale = options.scale.unwrap_or(self.scale);
         let about = options.follow.strands as usize + 1;
@@ -67,7 +67,7 @@ impl Raw<'_> {
         let root_radius = options.radius.or(covering);
         let flattening = Flattening::default().at_most(halvings(length, self.nodes));
         let mut builder = Strands::builder();
-        // The strand of the file that each strand is about.
+        // Number, in the file, of the strand that each strand is about.
         let mut guides = Vec::new();
         let mut seen = Seen::default();
         for (guide, strand) in self.strands.enumerate() {
@@ -75,7 +75,7 @@ impl Raw<'_> {
                 (options.up.turn(scale * position), scale * radius)
             };
             let mut nodes: Vec<(Vec3, f32)> = strand.nodes.map(place).collect();
-            // Curves through nodes that coincide have loops.
+            // Drop nodes that coincide, because curves through them have loops.
             let before = nodes.len();
             nodes.dedup_by(|node, last| Builder::coincide(node.0, last.0));
             seen.nodes += before;
@@ -121,8 +121,8 @@ impl Raw<'_> {
     }
 }
 
-/// How often spans may be halved, so that the hair of a file of `length` bytes stays within its
-/// memory.
+/// Returns how often spans may be halved, so that the hair of a file of `length` bytes stays within
+/// its memory.
 fn halvings(length: u64, nodes: u64) -> i32 {
     let most = GROWTH.saturating_mul(length) / nodes.saturating_mul(NODE_BYTES).max(1);
     let fits = |halvings: &i32| most >= 1 << halvings;
@@ -130,7 +130,7 @@ fn halvings(length: u64, nodes: u64) -> i32 {
 }
 
 impl Seen {
-    /// Counts a strand.
+    /// Counts a strand that is invisible or thick, and keeps its length.
     fn strand(&mut self, nodes: &[(Vec3, f32)]) {
         let steps = nodes.windows(2).map(|pair| pair[0].0.distance(pair[1].0));
         let length: f32 = steps.sum();
@@ -148,7 +148,7 @@ impl Seen {
         }
     }
 
-    /// Lines for the log.
+    /// Returns lines for the log.
     fn remarks(&self, builder: &Builder, strands: usize) -> Vec<String> {
         let mut remarks = Vec::new();
         let mut dropped = |what: &str, count: usize, of: usize| {
@@ -186,7 +186,7 @@ impl Seen {
     }
 }
 
-/// Widens strands that are too thin for the extent of the scene, and says so.
+/// Widens strands that are too thin for the extent of the scene, and returns a warning.
 fn clamp(
     strands: &mut Strands,
     guides: &[usize],
@@ -231,7 +231,7 @@ fn clamp(
     )))
 }
 
-/// The strand whose root is farthest from the middle of all roots.
+/// Returns the strand that reaches farthest from the middle of all roots.
 fn farthest(strands: &Strands) -> usize {
     let roots: Vec<Vec3> = (0..)
         .take(strands.strands())
@@ -255,7 +255,7 @@ fn farthest(strands: &Strands) -> usize {
 }
 
 impl Curve {
-    /// The strand as a polyline; radii go from node to node.
+    /// Flattens the strand to a polyline, with radii interpolated from node to node.
     fn polyline(self, nodes: Vec<(Vec3, f32)>, flattening: &Flattening) -> Vec<(Vec3, f32)> {
         let basis = match self {
             Self::Linear => return nodes,

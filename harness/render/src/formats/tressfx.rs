@@ -1,8 +1,8 @@
-//! `TressFX` (`.tfx`), version 4, after AMD's `TressFXFileFormat.h`.
+//! Format of `TressFX` (`.tfx`), version 4, after AMD's `TressFXFileFormat.h`.
 //!
-//! A header of 160 bytes: version as f32, strands, nodes per strand, then where sections begin, or 0: positions (four f32
-//! per node, the fourth a mass), texture coordinates per strand and per node (two f32), thickness per strand (f32), colours
-//! per node (four f32); 32 reserved numbers. Metres.
+//! A header of 160 bytes holds the version as f32, the strands, the nodes per strand, and then the offsets of sections, or 0:
+//! positions (four f32 per node, the fourth a mass), texture coordinates per strand and per node (two f32), thickness per
+//! strand (f32) and colours per node (four f32). Reserved numbers follow, 32 of them. The unit is the metre.
 
 use super::bytes::Bytes;
 use super::raw::{Raw, RawStrand};
@@ -11,12 +11,12 @@ use super::{Problem, Wrong};
 const HEADER: u64 = 160;
 const VERSION: f32 = 4.0;
 
-/// Whether the file begins with the version; no number of strands of another format has its bits.
+/// Returns true if the file begins with the version, whose bits no number of strands of another format has.
 pub(super) fn fits(bytes: Bytes<'_>) -> bool {
     bytes.f32(0) == VERSION && bytes.len() >= HEADER
 }
 
-/// The file, checked.
+/// Checks the file and returns its strands.
 pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
     bytes.header(HEADER)?;
     if bytes.f32(0) != VERSION {
@@ -48,10 +48,10 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
             },
         ));
     }
-    // At most 2^38: no section ends beyond 2^42.
+    // The product is at most 2^38, so that no section ends beyond 2^42.
     let of_nodes = u64::from(strands) * u64::from(nodes);
     let of_strands = u64::from(strands);
-    // Where the header has the beginning of a section, and the section's bytes.
+    // Offset of the field that holds the beginning of a section, and the section's bytes.
     let sections = [
         (12, 16 * of_nodes),
         (16, 8 * of_strands),

@@ -1,8 +1,8 @@
-//! Boxes along the axes.
+//! Axis-aligned bounding boxes.
 
 use glam::Vec3;
 
-/// A box along the axes. The empty one has `lo` above `hi`.
+/// Axis-aligned box between two corners. The empty box has `lo` above `hi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Lower corner.
@@ -12,19 +12,19 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Holds nothing.
+    /// Empty box, whose union with any other box is that other box.
     pub const EMPTY: Self = Self {
         lo: Vec3::INFINITY,
         hi: Vec3::NEG_INFINITY,
     };
 
-    /// Whether it holds nothing.
+    /// Returns true if the box holds no point, as [`EMPTY`](Self::EMPTY) does.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         !self.lo.cmple(self.hi).all()
     }
 
-    /// The smallest box that holds both.
+    /// Returns the smallest box that holds both this box and another.
     #[inline]
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
@@ -34,7 +34,7 @@ impl Bounds {
         }
     }
 
-    /// The smallest box that holds it and a point.
+    /// Returns the smallest box that holds both this box and a point.
     #[inline]
     #[must_use]
     pub fn with(&self, point: Vec3) -> Self {
@@ -44,21 +44,21 @@ impl Bounds {
         }
     }
 
-    /// Centre.
+    /// Returns the centre of the box, half way between its corners.
     #[inline]
     #[must_use]
     pub fn centre(&self) -> Vec3 {
         0.5 * (self.lo + self.hi)
     }
 
-    /// Extent along each axis; of the empty box 0.
+    /// Returns the extent along each axis, which is 0 for the empty box.
     #[inline]
     #[must_use]
     pub fn size(&self) -> Vec3 {
         (self.hi - self.lo).max(Vec3::ZERO)
     }
 
-    /// Half the area of the surface; of the empty box 0.
+    /// Returns half the area of the surface, which is 0 for the empty box.
     #[inline]
     #[must_use]
     pub fn half_area(&self) -> f32 {

@@ -1,4 +1,4 @@
-//! Procedural hair.
+//! Procedural hair of several kinds, grown strand by strand.
 
 mod head;
 mod random;
@@ -9,7 +9,7 @@ use super::{GeometryError, Strands};
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Kinds of procedural hair.
+/// Kinds of procedural hair that [`Groom::new`] has settings for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Long straight hair on a head.
@@ -27,7 +27,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them.
+    /// All kinds, in the order of their declaration.
     pub const ALL: [Self; 6] = [
         Self::Straight,
         Self::Wavy,
@@ -37,7 +37,7 @@ impl Kind {
         Self::Single,
     ];
 
-    /// Name on the command line.
+    /// Returns the name of the kind, in lower case.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -51,8 +51,8 @@ impl Kind {
     }
 }
 
-/// A head of procedural hair. Strand `i` depends on these settings and `i` alone, so that it has the same bits for any
-/// number of threads.
+/// Settings of a head of procedural hair. Strand `i` depends on these settings and on `i` alone, so that its bits are the same
+/// for any number of threads.
 ///
 /// ```
 /// use hairis_render::geometry::{Flattening, Groom, Kind};
@@ -68,7 +68,7 @@ pub struct Groom {
     pub strands: usize,
     /// Mean length, in centimetres.
     pub length: f32,
-    /// Deviation of the length, as a part of it; cut at two deviations.
+    /// Standard deviation of the length, relative to the length; cut at two deviations.
     pub length_spread: f32,
     /// Radius at the root, in centimetres.
     pub radius: f32,
@@ -76,32 +76,33 @@ pub struct Groom {
     pub taper: f32,
     /// Number of clumps.
     pub clumps: usize,
-    /// How far tips are drawn to the guide of their clump, 0 to 1.
+    /// Degree to which tips are drawn to the guide of their clump, from 0 to 1.
     pub clump: f32,
     /// Radius of curls, in centimetres.
     pub curl_radius: f32,
     /// Length of a curl, in centimetres.
     pub curl_length: f32,
-    /// Deviation of nodes at the tip, twice, in centimetres.
+    /// Twice the standard deviation of nodes at the tip, in centimetres.
     pub frizz: f32,
-    /// By how much strands bend down, per centimetre.
+    /// Rate at which strands bend down, per centimetre.
     pub gravity: f32,
-    /// How upright strands are at the root: 1 along the head's normal, 0 along its surface, combed away from a parting.
+    /// Uprightness of strands at the root: 1 along the head's normal, 0 along its surface, combed away from a parting.
     pub lift: f32,
     /// Nodes per strand.
     pub nodes: usize,
-    /// Seed of everything random.
+    /// Seed of all random numbers.
     pub seed: u64,
 }
 
 /// Semi-axes of the head, an ellipsoid about the origin, in centimetres.
 pub const HEAD: Vec3 = Vec3::new(7.5, 10.0, 8.8);
 
-/// [`Groom::taper`] of hair.
+/// Taper of hair, as in [`Groom::taper`].
 const TAPER: f32 = 0.6;
 
 impl Groom {
-    /// The settings of a kind. The radius is such that any number of strands covers as much as 100,000 hairs 80 um thick.
+    /// Returns the settings of a kind. The radius is such that any number of strands covers as much as 100,000 hairs 80 um thick,
+    /// except for [`Kind::Single`], whose one strand has a fixed radius.
     #[must_use]
     pub fn new(kind: Kind, strands: usize) -> Self {
         let strands = if kind == Kind::Single { 1 } else { strands };
@@ -167,22 +168,22 @@ impl Groom {
         }
     }
 
-    /// The radius at which this many strands cover as much as 100,000 hairs 80 um thick.
+    /// Returns the radius at which this many strands cover as much as 100,000 hairs 80 um thick.
     #[must_use]
     pub fn covering_radius(strands: usize) -> f32 {
         0.004 * (100_000.0 / strands.max(1) as f32).sqrt()
     }
 
-    /// The radius at a part `s` of a strand, from root to tip, with the taper that grooms have.
+    /// Returns the radius at a part `s` of a strand, from root to tip, with the taper that grooms have.
     pub(crate) fn tapered(radius: f32, s: f32) -> f32 {
         radius * (1.0 - TAPER * s * s * s)
     }
 
-    /// Grows the hair and flattens it to segments.
+    /// Grows the hair strand by strand, in parallel, and flattens it to segments.
     ///
     /// # Errors
     ///
-    /// If a setting is out of its range.
+    /// Returns an error if a setting is out of its range.
     pub fn grow(&self, flattening: &Flattening) -> Result<Strands, GeometryError> {
         self.check()?;
         let polylines: Vec<_> = (0..self.strands)
@@ -196,11 +197,11 @@ impl Groom {
         Ok(builder.finish())
     }
 
-    /// About how many segments the hair will have: by some of its strands, without growing the rest.
+    /// Estimates how many segments the hair will have from some of its strands, without growing the rest.
     ///
     /// # Errors
     ///
-    /// If a setting is out of its range.
+    /// Returns an error if a setting is out of its range.
     pub fn estimate_segments(&self, flattening: &Flattening) -> Result<u64, GeometryError> {
         self.check()?;
         let strands = self.strands.min(256);
@@ -211,12 +212,12 @@ impl Groom {
         Ok(nodes as u64 * self.strands as u64 / strands as u64)
     }
 
-    /// The flattened nodes of a strand, each with its radius.
+    /// Returns a function that grows a strand and flattens it to nodes, each with its radius.
     fn polylines<'a>(
         &'a self,
         flattening: &'a Flattening,
     ) -> impl Fn(usize) -> Vec<(Vec3, f32)> + Send + Sync + 'a {
-        // Doubled ends take a sixth of the distance of two nodes from either end.
+        // Doubled ends shorten the curve by a sixth of the distance of two nodes at either end.
         let grow: Box<dyn Fn(usize) -> Vec<Vec3> + Send + Sync + 'a> = match self.kind {
             Kind::Straight | Kind::Wavy | Kind::Curly | Kind::Fur => {
                 let head = head::HeadGroom::new(*self);

@@ -1,12 +1,12 @@
-//! Triangles.
+//! Meshes of triangles, on which hair grows.
 
 use super::Bounds;
 use glam::Vec3;
 
-/// Coordinates are at most this far from 0, in centimetres.
+/// Largest magnitude of a coordinate, in centimetres.
 const FARTHEST: f32 = 1e6;
 
-/// Triangles between places.
+/// Mesh of triangles, each given by the indices of its corners, in centimetres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     places: Vec<Vec3>,
@@ -15,12 +15,12 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Triangles by the numbers of their corners; those without area are dropped.
+    /// Creates a mesh from corners and triangles of their indices. Triangles without area are dropped.
     ///
     /// # Errors
     ///
-    /// A line, if a coordinate is not finite or above 1e6 cm in magnitude, a number is of no place,
-    /// or no triangle is left.
+    /// Returns a line of text if a coordinate is not finite or above 1e6 cm in magnitude, if an index is of
+    /// no corner, if no triangle is left, or if there are too many.
     pub fn new(places: Vec<Vec3>, mut triangles: Vec<[u32; 3]>) -> Result<Self, String> {
         let far = |place: &&Vec3| !place.abs().cmple(Vec3::splat(FARTHEST)).all();
         if let Some(place) = places.iter().find(far) {
@@ -36,7 +36,7 @@ impl Mesh {
             ));
         }
         triangles.retain(|corners| normal(corners.map(|k| places[k as usize])).is_some());
-        // Numbers of nodes and blocks of their tree fit 31 bits.
+        // Numbers of nodes and blocks of the tree must fit into 31 bits.
         if triangles.is_empty() || triangles.len() >= 1 << 31 {
             let count = triangles.len();
             return Err(format!(
@@ -51,34 +51,34 @@ impl Mesh {
         })
     }
 
-    /// Number of triangles.
+    /// Returns the number of triangles that have an area.
     #[must_use]
     pub fn triangles(&self) -> usize {
         self.triangles.len()
     }
 
-    /// The smallest box that holds them.
+    /// Returns the smallest box that holds all triangles.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// The corners of a triangle.
+    /// Returns the corners of a triangle, in the order in which the mesh was given.
     ///
     /// # Panics
     ///
-    /// If there is no such triangle.
+    /// Panics if there is no triangle of this number.
     #[inline]
     #[must_use]
     pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
         self.triangles[triangle as usize].map(|k| self.places[k as usize])
     }
 
-    /// Unit normal of a triangle: its corners go round it to the left.
+    /// Returns the unit normal of a triangle, around which its corners go to the left.
     ///
     /// # Panics
     ///
-    /// If there is no such triangle.
+    /// Panics if there is no triangle of this number.
     #[inline]
     #[must_use]
     pub fn normal(&self, triangle: u32) -> Vec3 {
@@ -86,7 +86,7 @@ impl Mesh {
     }
 }
 
-/// The normal of a triangle with an area.
+/// Returns the unit normal of a triangle, if the triangle has an area.
 fn normal([a, b, c]: [Vec3; 3]) -> Option<Vec3> {
     (b - a).cross(c - a).try_normalize()
 }

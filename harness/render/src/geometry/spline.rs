@@ -1,24 +1,23 @@
-//! Cubic splines, and polylines of them.
+//! Cubic splines, and the polylines to which they are flattened.
 
 use glam::Vec3;
 
-/// How nodes make a curve.
+/// Rule by which nodes make a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Basis {
     /// Uniform cubic B-spline with doubled ends: smooth to the second derivative, near its nodes.
     BSpline,
-    /// B-spline with ends pinned to the first and the last node, as USD's curves of this name have
-    /// it.
+    /// Uniform cubic B-spline with ends pinned to the first and the last node, as USD's curves of this name
+    /// have it.
     PinnedBSpline,
     /// Centripetal Catmull-Rom spline: through its nodes, with a continuous direction.
     ///
-    /// Parameters of nodes are apart by the square root of their distance. No other power keeps
-    /// spans free of cusps and loops (Yuksel et al. 2011). With even spans it is the uniform
-    /// spline.
+    /// The parameters of two nodes differ by the square root of their distance. No other power keeps spans
+    /// free of cusps and loops (Yuksel et al. 2011). With even spans, the spline is the uniform one.
     CatmullRom,
 }
 
-/// A curve of at least two nodes, over `[0, spans]`.
+/// Curve of at least two nodes, over `[0, spans]`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spline<'a> {
     nodes: &'a [Vec3],
@@ -26,17 +25,17 @@ pub(crate) struct Spline<'a> {
 }
 
 impl<'a> Spline<'a> {
-    /// None for less than two nodes.
+    /// Creates a curve, or returns `None` for fewer than two nodes.
     pub(crate) fn new(nodes: &'a [Vec3], basis: Basis) -> Option<Self> {
         (nodes.len() >= 2).then_some(Self { nodes, basis })
     }
 
-    /// Number of spans.
+    /// Returns the number of spans between nodes.
     pub(crate) fn spans(&self) -> usize {
         self.nodes.len() - 1
     }
 
-    /// Point and derivative at `x` in `[0, 1]` of a span.
+    /// Returns the point and the derivative at `x` in `[0, 1]` of a span.
     fn at(&self, span: usize, x: f32) -> (Vec3, Vec3) {
         let last = self.nodes.len() - 1;
         let [mut a, b, c, mut d] =
@@ -61,32 +60,32 @@ impl<'a> Spline<'a> {
     }
 }
 
-/// Derivative of the centripetal spline at `node`, per span to `after`. At an end, where `before`
-/// is the node itself, half of the way to the neighbour.
+/// Returns the derivative of the centripetal spline at `node`, per span to `after`. At an end, where
+/// `before` is the node itself, the derivative is half of the way to the neighbour.
 fn slope(before: Vec3, node: Vec3, after: Vec3) -> Vec3 {
     let (back, ahead) = (node - before, after - node);
     let [p, q] = [back, ahead].map(|chord| chord.length().sqrt());
     if p == 0.0 || q == 0.0 {
         return 0.5 * ahead;
     }
-    // The quotient of p and q alone: no square of a small distance.
+    // Use the quotient of p and q alone, because the square of a small distance may underflow.
     let ratio = q / p;
     (ratio * ratio * back + ahead) / (1.0 + ratio)
 }
 
-/// How finely curves are flattened to segments.
+/// Tolerances with which curves are flattened to segments.
 ///
-/// Finer than the default costs more than it shows, because the shading tangent is interpolated and hides the corners: at a
-/// quarter of a radius a wavy strand has 3.4 times the segments, and rays take 1.4 times as long.
+/// A finer flattening than the default costs more than it shows, because the shading tangent is interpolated and hides the corners. At
+/// a quarter of a radius, a wavy strand has 3.4 times the segments, and rays take 1.4 times as long.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flattening {
-    /// Distance of the curve from the segment, in radii.
+    /// Largest distance of the curve from the segment, in radii at the root.
     pub radii: f32,
-    /// Distance in centimetres: the smaller of both bounds holds.
+    /// Largest distance of the curve from the segment, in centimetres. The smaller of both bounds holds.
     pub centimetres: f32,
-    /// By how much the curve may turn along a segment, in rad.
+    /// Largest turn of the curve along a segment, in rad.
     pub turn: f32,
-    /// Spans between two nodes are halved this many times at most: nodes that coincide may turn by any angle.
+    /// Largest number of halvings of a span between two nodes, because nodes that coincide may turn by any angle.
     pub halvings: i32,
 }
 
@@ -110,7 +109,7 @@ impl Flattening {
         }
     }
 
-    /// Appends the curve as nodes of a polyline. `radius` is that at a part of the curve, from 0 at the root to 1.
+    /// Appends the curve as nodes of a polyline. `radius` returns the radius at a part of the curve, from 0 at the root to 1.
     pub(crate) fn append(
         &self,
         spline: &Spline,
@@ -136,7 +135,7 @@ impl Flattening {
         }
     }
 
-    /// Whether a segment will do for a piece, by points and derivatives at its ends and its middle.
+    /// Returns true if one segment can replace a piece, given by points and derivatives at its ends and its middle.
     fn is_flat(&self, [from, middle, to]: [(Vec3, Vec3); 3], tolerance: f32) -> bool {
         let chord = to.0 - from.0;
         let to_middle = middle.0 - from.0;

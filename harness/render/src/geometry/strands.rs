@@ -1,20 +1,20 @@
-//! Strands of hair: polylines with a radius per node.
+//! Strands of hair, as polylines with a radius per node.
 
 use super::Bounds;
 use core::fmt;
 use core::ops::Range;
 use glam::Vec3;
 
-/// Shorter segments are dropped: their direction is made of rounding errors.
+/// Length below which segments are dropped, because their direction consists of rounding errors.
 const SHORTEST: f32 = 1e-7;
-/// Coordinates are at most this far from 0, in centimetres.
+/// Largest magnitude of a coordinate, in centimetres.
 const FARTHEST: f32 = 1e6;
-/// Bounds the number of nodes, so that numbers of segments, blocks and tree nodes fit 31 bits.
+/// Largest number of nodes, so that numbers of segments, blocks and tree nodes fit into 31 bits.
 const MOST_NODES: usize = 1 << 31;
 
 /// Strands of hair, flattened to polylines from root to tip, with a radius per node.
 ///
-/// A segment is numbered by its node on the root side. [`numbers`](Self::numbers) lists the numbers.
+/// A segment has the number of its node on the root side. [`numbers`](Self::numbers) lists the numbers.
 ///
 /// ```
 /// use glam::Vec3;
@@ -30,12 +30,12 @@ const MOST_NODES: usize = 1 << 31;
 pub struct Strands {
     nodes: Vec<StrandNode>,
     tangents: Vec<Vec3>,
-    /// The first node of each strand, and the number of nodes.
+    /// First node of each strand, and the number of nodes.
     first: Vec<u32>,
     bounds: Bounds,
 }
 
-/// Place and radius side by side: both are read for every hit.
+/// Position and radius side by side, because both are read for every hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StrandNode {
     position: Vec3,
@@ -43,59 +43,59 @@ struct StrandNode {
 }
 
 impl Strands {
-    /// Takes strands one by one.
+    /// Returns a builder that takes strands one by one.
     #[must_use]
     pub fn builder() -> Builder {
         Builder::default()
     }
 
-    /// Number of strands.
+    /// Returns the number of strands.
     #[must_use]
     pub fn strands(&self) -> usize {
         self.first.len() - 1
     }
 
-    /// Number of segments.
+    /// Returns the number of segments of all strands.
     #[must_use]
     pub fn segments(&self) -> usize {
         self.nodes.len() - self.strands()
     }
 
-    /// Number of nodes, one more per strand than segments.
+    /// Returns the number of nodes, which is one more per strand than that of segments.
     #[must_use]
     pub fn nodes(&self) -> usize {
         self.nodes.len()
     }
 
-    /// The smallest box that holds every round segment.
+    /// Returns the smallest box that holds every round segment.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// The nodes of a strand; all but the last number its segments.
+    /// Returns the nodes of a strand; all but the last number its segments.
     ///
     /// # Panics
     ///
-    /// If there is no such strand.
+    /// Panics if there is no strand of this number.
     #[must_use]
     pub fn nodes_of(&self, strand: u32) -> Range<u32> {
         let strand = strand as usize;
         self.first[strand]..self.first[strand + 1]
     }
 
-    /// The numbers of all segments, each with that of its strand, in ascending order.
+    /// Iterates over all segments in ascending order, each as the number of its strand and its own number.
     pub fn numbers(&self) -> impl Iterator<Item = (u32, u32)> {
         (0..)
             .zip(self.first.windows(2))
             .flat_map(|(strand, ends)| (ends[0]..ends[1] - 1).map(move |k| (strand, k)))
     }
 
-    /// The point of the axis at `s`, 0 at the end of the root and 1 at that of the tip.
+    /// Returns the point of the axis of a segment at `s`, from 0 at the root's end to 1 at the tip's end.
     ///
     /// # Panics
     ///
-    /// If there is no such segment. `radius` and `tangent` do, too.
+    /// Panics if there is no node of this number, or none after it.
     #[inline]
     #[must_use]
     pub fn position(&self, segment: u32, s: f32) -> Vec3 {
@@ -103,11 +103,11 @@ impl Strands {
         self.nodes[k].position + s * (self.nodes[k + 1].position - self.nodes[k].position)
     }
 
-    /// The radius at `s`.
+    /// Returns the radius of a segment at `s`, interpolated between the radii of its nodes.
     ///
     /// # Panics
     ///
-    /// See [`position`](Self::position).
+    /// Panics as [`position`](Self::position) does.
     #[inline]
     #[must_use]
     pub fn radius(&self, segment: u32, s: f32) -> f32 {
@@ -115,17 +115,17 @@ impl Strands {
         self.nodes[k].radius + s * (self.nodes[k + 1].radius - self.nodes[k].radius)
     }
 
-    /// The place of a node.
+    /// Returns the position of the axis of a strand at a node.
     ///
     /// # Panics
     ///
-    /// If there is no such node.
+    /// Panics if there is no node of this number.
     #[must_use]
     pub fn node_position(&self, node: u32) -> Vec3 {
         self.nodes[node as usize].position
     }
 
-    /// The largest radius; 0 without strands.
+    /// Returns the largest radius of any node, which is 0 without strands.
     #[must_use]
     pub fn thickest(&self) -> f32 {
         self.nodes
@@ -134,7 +134,7 @@ impl Strands {
             .fold(0.0, f32::max)
     }
 
-    /// Multiplies the radii of a strand.
+    /// Multiplies the radii of a strand by a factor, and widens the bounds.
     pub(crate) fn widen(&mut self, strand: u32, factor: f32) {
         for k in self.nodes_of(strand) {
             let node = &mut self.nodes[k as usize];
@@ -144,35 +144,35 @@ impl Strands {
         }
     }
 
-    /// The radius at a node.
+    /// Returns the radius of a strand at a node.
     ///
     /// # Panics
     ///
-    /// If there is no such node.
+    /// Panics if there is no node of this number.
     #[must_use]
     pub fn node_radius(&self, node: u32) -> f32 {
         self.nodes[node as usize].radius
     }
 
-    /// The shading tangent at `s`, from root to tip, unit: interpolated between those of the nodes, which are means of
-    /// the directions of the segments that meet there.
+    /// Returns the shading tangent at `s`, from root to tip, unit. It is interpolated between the tangents of the nodes, which are
+    /// means of the directions of the segments that meet there.
     ///
     /// # Panics
     ///
-    /// See [`position`](Self::position).
+    /// Panics as [`position`](Self::position) does.
     #[inline]
     #[must_use]
     pub fn tangent(&self, segment: u32, s: f32) -> Vec3 {
         let k = segment as usize;
         let tangent = self.tangents[k] + s * (self.tangents[k + 1] - self.tangents[k]);
-        // Where a strand turns back at both ends, the tangents of the nodes may cancel.
+        // If a strand turns back at both ends, the tangents of the nodes may cancel.
         tangent
             .try_normalize()
             .unwrap_or_else(|| (self.nodes[k + 1].position - self.nodes[k].position).normalize())
     }
 }
 
-/// Takes strands one by one, each checked, and makes [`Strands`] of them.
+/// Builder of [`Strands`], which takes strands one by one and checks each.
 #[derive(Clone, Debug, Default)]
 pub struct Builder {
     nodes: Vec<StrandNode>,
@@ -182,13 +182,13 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// Adds a strand, given by positions and radii from root to tip. Of nodes that lie on one another the first is kept;
-    /// a strand that has less than two left is dropped.
+    /// Adds a strand, given by positions and radii from root to tip. Of nodes that lie on one another, the first is kept.
+    /// A strand with fewer than two nodes left is dropped.
     ///
     /// # Errors
     ///
-    /// If a coordinate or radius is not finite, a coordinate above 1e6 cm in magnitude, or a radius negative or above
-    /// 1e6 cm; and if there are too many nodes. Nothing is added then.
+    /// Returns an error, and adds nothing, if a coordinate or radius is not finite, if a coordinate is above 1e6 cm in magnitude,
+    /// if a radius is negative or above 1e6 cm, or if there are too many nodes.
     pub fn push(
         &mut self,
         nodes: impl IntoIterator<Item = (Vec3, f32)>,
@@ -228,30 +228,30 @@ impl Builder {
         Ok(())
     }
 
-    /// Whether two nodes in a row count as one.
+    /// Returns true if two successive nodes count as one.
     pub(crate) fn coincide(a: Vec3, b: Vec3) -> bool {
         a.distance(b) < SHORTEST
     }
 
-    /// Number of strands so far.
+    /// Returns the number of strands that were added so far.
     #[must_use]
     pub fn strands(&self) -> usize {
         self.last.len()
     }
 
-    /// Number of nodes that lay on the node before them.
+    /// Returns the number of nodes that were dropped, because they lay on the node before them.
     #[must_use]
     pub fn dropped_nodes(&self) -> usize {
         self.dropped_nodes
     }
 
-    /// Number of strands with less than two nodes.
+    /// Returns the number of strands that were dropped, because fewer than two nodes were left.
     #[must_use]
     pub fn dropped_strands(&self) -> usize {
         self.dropped_strands
     }
 
-    /// The strands.
+    /// Returns the strands that were added, with their tangents and their bounds.
     #[must_use]
     pub fn finish(self) -> Strands {
         let mut tangents = Vec::with_capacity(self.nodes.len());
@@ -270,7 +270,7 @@ impl Builder {
                 } else {
                     before
                 };
-                // A strand that turns back on itself has no mean direction there.
+                // A strand that turns back on itself has no mean direction at that node.
                 tangents.push((before + after).try_normalize().unwrap_or(before));
                 before = after;
             }
@@ -284,44 +284,44 @@ impl Builder {
     }
 }
 
-/// Why a strand was refused.
+/// Reason why a strand, or a setting of procedural hair, was rejected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum GeometryError {
     /// A coordinate was not finite, or too far away.
     Position {
-        /// The node of the strand, from 0.
+        /// Index of the node in the strand, from 0.
         node: usize,
         /// Position of the node.
         position: Vec3,
     },
     /// A radius was negative, not finite, or too large.
     Radius {
-        /// The node of the strand, from 0.
+        /// Index of the node in the strand, from 0.
         node: usize,
         /// Radius at the node.
         radius: f32,
     },
     /// A setting of a groom was not finite, or out of its range.
     Setting {
-        /// Which.
+        /// Name of the setting.
         name: &'static str,
         /// Value given.
         value: f32,
-        /// The least that it may be.
+        /// Smallest value allowed.
         least: f32,
-        /// The most that it may be.
+        /// Largest value allowed.
         most: f32,
     },
-    /// A number of things of a groom was out of its range.
+    /// A count of a groom was out of its range.
     Count {
-        /// Name of the things that are counted.
+        /// Name of the count.
         name: &'static str,
         /// Number given.
         value: usize,
-        /// The least that it may be.
+        /// Smallest number allowed.
         least: usize,
-        /// The most that it may be.
+        /// Largest number allowed.
         most: usize,
     },
     /// There were more nodes than can be numbered.

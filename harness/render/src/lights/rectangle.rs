@@ -1,4 +1,4 @@
-//! Rectangles: walls, and lights.
+//! Rectangles in any frame, which serve as walls and as lights.
 
 use super::{LightSample, Seen};
 use clap::ValueEnum;
@@ -6,7 +6,7 @@ use core::f64::consts::PI;
 use glam::{DVec3, Vec3};
 use hairis_instruments::light::rounded;
 
-/// Below this solid angle, in sr, the difference of its corners' angles keeps no digits: points are drawn by area.
+/// Solid angle, in sr, below which the difference of the corners' angles keeps no digits: points are then drawn by area.
 const SMALL: f64 = 1e-7;
 
 /// How directions towards rectangles are drawn.
@@ -19,7 +19,7 @@ pub enum RectangleSampling {
     Area,
 }
 
-/// A rectangle in any frame. It emits on the side of its normal, and reflects on both.
+/// Rectangle in any frame. It emits on the side of its normal, and reflects on both sides.
 ///
 /// ```
 /// use glam::Vec3;
@@ -38,37 +38,37 @@ pub struct Rectangle {
     corner: Vec3,
     edges: [Vec3; 2],
     normal: Vec3,
-    /// Radiance that it emits.
+    /// Radiance that the rectangle emits.
     pub emission: Vec3,
-    /// Share of the light that it reflects, as Lambert's law says.
+    /// Share of the light that the rectangle reflects, by Lambert's law.
     pub albedo: Vec3,
 }
 
-/// A rectangle as it is seen from a point: in its own frame, with the point as origin.
+/// Rectangle as seen from a point, in the frame of the rectangle with the point as origin.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     emission: Vec3,
     axes: [DVec3; 3],
     lo: [f64; 2],
     hi: [f64; 2],
-    /// Distance of the plane, above 0.
+    /// Distance of the plane from the point, above 0.
     height: f64,
     /// Projection on the unit sphere; `None` if points are drawn by area.
     projected: Option<Projected>,
 }
 
-/// A rectangle projected on the unit sphere.
+/// Rectangle projected onto the unit sphere.
 #[derive(Clone, Copy, Debug)]
 struct Projected {
     solid_angle: f64,
-    /// `2 pi` less the angles at the two corners of low x.
+    /// Two pi less the angles at the two corners of low x.
     start: f64,
     /// Heights of the normals of the planes through the sides of low and high y.
     normals: [f64; 2],
 }
 
 impl Rectangle {
-    /// A light with a corner, two edges at a right angle, and a radiance. It shines to the side of the origin.
+    /// Creates a light from a corner, two edges at a right angle, and a radiance. The light shines to the side of the origin.
     #[must_use]
     pub fn light(corner: Vec3, edge_a: Vec3, edge_b: Vec3, emission: Vec3) -> Self {
         Self {
@@ -77,7 +77,7 @@ impl Rectangle {
         }
     }
 
-    /// A wall that reflects. Its normal is on the side of the origin.
+    /// Creates a wall that reflects, from a corner and two edges at a right angle. Its normal is on the side of the origin.
     #[must_use]
     pub fn wall(corner: Vec3, edge_a: Vec3, edge_b: Vec3, albedo: Vec3) -> Self {
         let normal = edge_a.cross(edge_b).normalize();
@@ -106,13 +106,13 @@ impl Rectangle {
         Self { normal, ..self }
     }
 
-    /// Unit normal, on the side that emits.
+    /// Returns the unit normal, which is on the side that emits.
     #[must_use]
     pub fn normal(&self) -> Vec3 {
         self.normal
     }
 
-    /// Mirrored in the plane x = 0.
+    /// Returns the rectangle mirrored in the plane x = 0.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         let mirror = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
@@ -126,7 +126,7 @@ impl Rectangle {
         }
     }
 
-    /// Distance along a ray, if it meets the rectangle beyond `t_min`.
+    /// Returns the distance along a ray, if the ray meets the rectangle beyond `t_min`.
     #[inline]
     #[must_use]
     pub fn meet(&self, origin: Vec3, direction: Vec3, t_min: f32) -> Option<f32> {
@@ -138,7 +138,7 @@ impl Rectangle {
             .then_some(t)
     }
 
-    /// View from a point, to be shared by all directions drawn there. `None` from behind.
+    /// Returns the view from a point, which all directions drawn there share, or `None` from behind.
     #[must_use]
     pub fn view(&self, origin: Vec3, sampling: RectangleSampling) -> Option<View> {
         let corner = (self.corner - origin).as_dvec3();
@@ -167,14 +167,14 @@ impl Rectangle {
     }
 }
 
-/// Length of a vector whose squares are far from overflow.
+/// Returns the length of a vector whose squares are far from overflow.
 #[inline]
 fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
 }
 
 impl Projected {
-    /// `None` if it is small.
+    /// Projects a rectangle onto the unit sphere, or returns `None` if its solid angle is small.
     ///
     /// - Source: Urena, Fajardo and King 2013.
     fn new(lo: [f64; 2], hi: [f64; 2], height: f64) -> Option<Self> {
@@ -199,14 +199,14 @@ impl Projected {
 }
 
 impl View {
-    /// Density of a direction that meets the rectangle, per steradian.
+    /// Returns the density of a direction that meets the rectangle, per steradian.
     #[inline]
     #[must_use]
     pub fn pdf(&self, direction: Vec3) -> f32 {
         self.pdf_at(-direction.as_dvec3().dot(self.axes[2]))
     }
 
-    /// Density of a direction at a cosine to the normal, per steradian. By area it is `distance^2 / (area cosine)`.
+    /// Returns the density of a direction at a cosine to the normal, per steradian. By area it is `distance^2 / (area cosine)`.
     #[inline]
     fn pdf_at(&self, cosine: f64) -> f32 {
         rounded(match &self.projected {
@@ -219,7 +219,7 @@ impl View {
         })
     }
 
-    /// Radiance and density of a ray that meets the rectangle.
+    /// Returns the radiance and the density of a ray that meets the rectangle.
     #[inline]
     #[must_use]
     pub fn see(&self, direction: Vec3) -> Seen {
@@ -229,7 +229,7 @@ impl View {
         }
     }
 
-    /// A direction drawn from two uniform numbers.
+    /// Draws a direction towards the rectangle from two uniform numbers.
     #[must_use]
     pub fn sample(&self, xi: [f32; 2]) -> LightSample {
         let [x, y] = self.point(xi.map(f64::from));
@@ -243,7 +243,7 @@ impl View {
         }
     }
 
-    /// A point of the rectangle, in its frame.
+    /// Draws a point of the rectangle, in its frame.
     fn point(&self, xi: [f64; 2]) -> [f64; 2] {
         let Some(Projected {
             solid_angle,

@@ -1,4 +1,4 @@
-//! Directions towards a sky, drawn beforehand.
+//! Tables of directions towards a sky that are drawn beforehand.
 
 use super::{LightSample8, Sky};
 use crate::numbers::Even;
@@ -7,28 +7,28 @@ use hairis::simd::f32x8;
 use hairis_instruments::sequence::mix;
 use std::sync::OnceLock;
 
-/// Most directions of a table: 8 MB.
+/// Largest number of directions of a table, which take 8 MB.
 const MOST: usize = 1 << 18;
-/// Most tables of a scene: later passes read the first ones again.
+/// Largest number of tables of a scene; later passes read the first ones again.
 const TABLES: u32 = 64;
 
-/// Directions of a sky in blocks of eight, drawn once for many shading points. A point reads blocks in a row, from a block of its own
+/// Directions of a sky in blocks of eight, drawn once for many shading points. A point reads successive blocks, from a block of its own
 /// choice.
 ///
 /// The numbers behind the directions are an additive sequence that fills the square evenly (Roberts's generalised golden ratio), shifted
 /// by two random numbers.
 ///
-/// - Each direction has the sky's density: its two numbers are uniform.
-/// - Any row of blocks is spread evenly over the sky, since it is the same sequence with another shift.
-/// - The mean over all points has the error of the table. It is that of a sum over evenly spread points, far below the noise of a
-///   picture, and differs from seed to seed.
+/// - Each direction has the sky's density, because its two numbers are uniform.
+/// - Any successive blocks are spread evenly over the sky, because they are the same sequence with another shift.
+/// - The mean over all points has the error of the table. It is that of a sum over evenly spread points, which is far below the noise of
+///   a picture and differs from seed to seed.
 #[derive(Clone, Debug)]
 pub struct Table {
     blocks: Vec<LightSample8>,
 }
 
 impl Table {
-    /// Draws a table of some length, at most 8 MB. `None` without a sky.
+    /// Draws a table of a given length in directions, at most 8 MB. Returns `None` for a black sky.
     #[must_use]
     pub fn draw(sky: &Sky, seed: u64, length: usize) -> Option<Self> {
         if sky.is_black() {
@@ -47,7 +47,7 @@ impl Table {
         })
     }
 
-    /// A block's place, from a uniform number.
+    /// Returns the place of a block that a uniform number selects.
     #[inline]
     #[must_use]
     #[expect(
@@ -59,7 +59,7 @@ impl Table {
         (xi * self.blocks.len() as f32) as usize
     }
 
-    /// A block by its place, counted around.
+    /// Returns a block by its place, which wraps around at the end of the table.
     #[inline]
     #[must_use]
     pub fn block(&self, place: usize) -> &LightSample8 {
@@ -75,9 +75,9 @@ impl Table {
     }
 }
 
-/// Tables of the passes of a picture, each drawn when it is first read.
+/// Tables for the passes of a picture, each drawn when it is first read.
 ///
-/// Tables depend on seed and pass alone, not on the thread that draws them.
+/// A table depends on seed and pass alone, not on the thread that draws it.
 #[derive(Debug)]
 pub struct Tables<'a> {
     sky: &'a Sky,
@@ -87,7 +87,7 @@ pub struct Tables<'a> {
 }
 
 impl<'a> Tables<'a> {
-    /// Tables of some length.
+    /// Creates tables of a given length in directions, which are not drawn yet.
     #[must_use]
     pub fn new(sky: &'a Sky, seed: u64, length: usize) -> Self {
         Self {
@@ -104,7 +104,7 @@ impl<'a> Tables<'a> {
         self.tables[0] = OnceLock::from(table);
     }
 
-    /// The table of a pass. `None` without a sky.
+    /// Returns the table of a pass, which is drawn if it is read for the first time. Returns `None` for a black sky.
     #[inline]
     #[must_use]
     pub fn of_pass(&self, pass: u32) -> Option<&Table> {
@@ -114,7 +114,7 @@ impl<'a> Tables<'a> {
     }
 }
 
-/// The lower 32 bits.
+/// Returns the lower 32 bits.
 fn low(bits: u64) -> u32 {
     (bits & 0xffff_ffff) as u32
 }

@@ -1,8 +1,8 @@
-//! Points that fill a cube evenly.
+//! Points of an additive sequence, which fill a square or a cube evenly.
 
-/// Points of an additive sequence (Roberts's generalised golden ratio), shifted: any of them in a row fill the cube evenly.
+/// Points of an additive sequence (Roberts's generalised golden ratio), shifted. Any successive points fill the cube evenly.
 ///
-/// Where the shift is uniform each point is, so that estimates from them are unbiased. They cost an addition per number.
+/// If the shift is uniform, each point is uniform, so that estimates from the points are unbiased. A number costs one addition.
 ///
 /// ```
 /// use hairis_render::numbers::Even;
@@ -11,7 +11,7 @@
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Even<const D: usize> {
-    /// In units of 2^-32, as the steps: sums wrap around as they should.
+    /// Shift in units of 2^-32, like the steps, so that sums wrap around as they should.
     shift: [u32; D],
     steps: [u32; D],
 }
@@ -21,7 +21,7 @@ const SQUARE: [u32; 2] = [3_242_174_889, 2_447_445_414];
 const CUBE: [u32; 3] = [3_518_319_155, 2_882_110_345, 2_360_945_575];
 
 impl Even<2> {
-    /// Points of a square, from a shift in units of 2^-32.
+    /// Creates the points of a square, from a shift in units of 2^-32.
     #[must_use]
     pub fn square(shift: [u32; 2]) -> Self {
         Self {
@@ -32,7 +32,7 @@ impl Even<2> {
 }
 
 impl Even<3> {
-    /// Points of a cube, from a shift in `[0, 1)`.
+    /// Creates the points of a cube, from a shift in `[0, 1)` along each axis.
     #[must_use]
     pub fn cube(shift: [f32; 3]) -> Self {
         #[expect(
@@ -46,7 +46,7 @@ impl Even<3> {
 }
 
 impl<const D: usize> Even<D> {
-    /// Point `i`.
+    /// Returns the point of index `i`, which is in `[0, 1)` along each axis.
     #[inline]
     #[must_use]
     pub fn at(&self, i: u32) -> [f32; D] {
@@ -55,7 +55,7 @@ impl<const D: usize> Even<D> {
         })
     }
 
-    /// Points `first` to `first + 7`: by axis, one per lane.
+    /// Returns the points `first` to `first + 7` by axis, one per lane.
     #[inline]
     #[must_use]
     pub fn eight(&self, first: u32) -> [[f32; 8]; D] {
@@ -70,10 +70,10 @@ impl<const D: usize> Even<D> {
     }
 }
 
-/// The upper 24 bits as a number in `[0, 1)`.
+/// Converts the upper 24 bits to a number in `[0, 1)`.
 #[inline]
 fn unit(bits: u32) -> f32 {
-    // As a signed number, which vectors convert in one instruction.
+    // Convert from a signed number, which vectors do in one instruction.
     (bits >> 8).cast_signed() as f32 * (1.0 / 16_777_216.0)
 }
 

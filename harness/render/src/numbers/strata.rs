@@ -1,17 +1,17 @@
-//! Jittered points: one in each cell of a grid, in random order.
+//! Jittered points, one in each cell of a grid, in random order.
 
 use super::{half, unit};
 use hairis_instruments::sequence::mix;
 
 /// Cells along each axis of a grid.
 const SIDE: usize = 4;
-/// Samples that fill the grid once: it is shuffled anew for the next ones.
+/// Number of samples that fill the grid once; it is shuffled anew for the next ones.
 const CELLS: usize = SIDE * SIDE;
 
-/// Two coordinates of a sample: `CELLS` samples in a row, from a multiple of `CELLS` on, have one point in each cell.
+/// Returns two coordinates of a sample. Any `CELLS` successive samples, from a multiple of `CELLS` on, have one point in each cell.
 ///
-/// - `key`: of the seed, the pixel and the pair of coordinates.
-/// - Uniform on its own, since every cell is equally likely: estimates are unbiased.
+/// - `key` is a hash of the seed, the pixel and the pair of coordinates.
+/// - Each point is uniform on its own, because every cell is equally likely, so that estimates are unbiased.
 pub(super) fn pair(key: u64, sample: u32) -> [f32; 2] {
     let cell = cell(
         mix(key ^ (sample as usize / CELLS) as u64),
@@ -19,12 +19,12 @@ pub(super) fn pair(key: u64, sample: u32) -> [f32; 2] {
     );
     let jitter = mix(mix(key) ^ u64::from(sample));
     let place = |cell: usize, jitter: f32| (cell as f32 + jitter) * (1.0 / SIDE as f32);
-    // A jitter of 22 bits, so that the sum is exact and below 1.
+    // The jitter has 22 bits, so that the sum is exact and below 1.
     let jitter = [jitter >> 32, jitter].map(|bits| unit(half(bits) & !0x3ff));
     [place(cell % SIDE, jitter[0]), place(cell / SIDE, jitter[1])]
 }
 
-/// Entry `index` of a random order of the cells: Fisher and Yates's shuffle.
+/// Returns entry `index` of a random order of the cells, by Fisher and Yates's shuffle.
 fn cell(mut bits: u64, index: usize) -> usize {
     let mut order: [usize; CELLS] = core::array::from_fn(|k| k);
     for last in (1..order.len()).rev() {

@@ -1,4 +1,4 @@
-//! A part that grows as its picture does.
+//! Log of a part, whose file grows as its picture does.
 
 use super::{Part, record};
 use crate::film::Tile;
@@ -7,18 +7,18 @@ use hairis_instruments::error::Error;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Bytes that are written at once.
+/// Number of bytes that are written at once.
 const BLOCK: usize = 1 << 23;
-/// Largest ratio of a file's length to the length it needs, before it is written anew.
+/// Largest ratio of a file's length to the length it needs, before the file is written anew.
 const MOST: usize = 3;
 
-/// The file of a part, to which tiles are appended. It is written as a whole when the first are
-/// saved, and again once most of it is out of date.
+/// File of a part, to which tiles are appended. The file is written as a whole when the first tiles
+/// are saved, and again once most of it is out of date.
 #[derive(Debug)]
 pub struct Log {
     path: PathBuf,
     file: Option<Appended>,
-    /// Samples of the tiles in the file, and whether it has what their pixels meet first.
+    /// Samples of each tile in the file, and whether the tile has what its pixels meet first.
     saved: HashMap<[u32; 2], (u32, bool)>,
     /// Length of the file in bytes.
     length: usize,
@@ -29,7 +29,7 @@ fn state(tile: &Tile) -> (u32, bool) {
 }
 
 impl Log {
-    /// A file that is written when the first tiles are saved, in place of what is there.
+    /// Creates a log whose file is written when the first tiles are saved, in place of any file there.
     #[must_use]
     pub fn new(path: &Path) -> Self {
         Self {
@@ -40,7 +40,7 @@ impl Log {
         }
     }
 
-    /// A file that has the tiles of a part in its first bytes.
+    /// Opens a file that has the tiles of a part in its first bytes.
     pub(super) fn go_on(path: &Path, part: &Part, whole: usize) -> Result<Self, Error> {
         let file = Appended::open(path)?;
         file.cut(whole)?;
@@ -52,17 +52,17 @@ impl Log {
         })
     }
 
-    /// The file.
+    /// Returns the path of the file to which tiles are appended.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Saves the tiles that are not as in the file.
+    /// Saves the tiles whose state differs from that in the file.
     ///
     /// # Errors
     ///
-    /// If the file cannot be written, or another process is writing to it.
+    /// Returns an error if the file cannot be written, or if another process is writing to it.
     pub fn save(&mut self, part: &Part) -> Result<(), Error> {
         let Some(file) = &self.file else {
             return self.write(part);
@@ -91,14 +91,14 @@ impl Log {
         Ok(())
     }
 
-    /// Writes the file as a whole.
+    /// Writes the file as a whole, with the current state of every tile.
     ///
     /// # Errors
     ///
-    /// As [`save`](Self::save).
+    /// Returns the errors of [`save`](Self::save).
     pub fn write(&mut self, part: &Part) -> Result<(), Error> {
         if self.file.take().is_none() && self.path.exists() {
-            // Whoever writes to it has it.
+            // Fail if another process holds the file.
             Appended::open(&self.path)?;
         }
         part.write(&self.path)?;
@@ -109,13 +109,13 @@ impl Log {
     }
 }
 
-/// Tiles that are in a file, with their states.
+/// Iterates over the tiles that a file has, with their states.
 fn begun(part: &Part) -> impl Iterator<Item = ([u32; 2], (u32, bool))> {
     let begun = part.film.tiles.iter().filter(|tile| tile.is_begun());
     begun.map(|tile| (tile.key(), state(tile)))
 }
 
-/// Bytes of a tile in a file, or a few more.
+/// Returns the bytes of a tile in a file, or a few more.
 fn record_size(tile: &Tile) -> usize {
     64 + 32 * tile.sums.len() + 28 * tile.first.len()
 }

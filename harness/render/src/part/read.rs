@@ -1,14 +1,14 @@
-//! Reading the file of a part, without holding it in memory.
+//! Reader of the file of a part, which does not hold the file in memory.
 
 use super::{MAGIC, Part};
 use crate::film::{Crop, Film, Sums, TILE, Tile};
 use std::collections::BTreeMap;
 use std::io::{self, BufRead, ErrorKind, Read};
 
-/// Most bytes of the first two lines.
+/// Largest number of bytes of the first two lines.
 const LINES: u64 = 1 << 16;
 
-/// Takes numbers from the front of a file, and keeps their bytes for the digest behind them.
+/// Source of numbers from the front of a file, which keeps their bytes for the digest behind them.
 struct Source<R> {
     input: R,
     /// Bytes taken since the last digest.
@@ -18,7 +18,7 @@ struct Source<R> {
     is_sealed: fn(&[u8], u64) -> bool,
 }
 
-/// A file that is not as a part is.
+/// Returns the error for a file that is not as a part is.
 fn damaged() -> io::Error {
     ErrorKind::InvalidData.into()
 }
@@ -39,7 +39,7 @@ impl<R: Read> Source<R> {
         self.take().map(f64::from_le_bytes)
     }
 
-    /// Compares what was taken with the digest that follows.
+    /// Compares the bytes that were taken with the digest that follows.
     fn check(&mut self) -> io::Result<()> {
         let content = self.bytes.len();
         let check = self.take().map(u64::from_le_bytes)?;
@@ -51,7 +51,7 @@ impl<R: Read> Source<R> {
         Ok(())
     }
 
-    /// A part of a picture, if it lies within the largest.
+    /// Reads a part of a picture, if it lies within the largest picture.
     fn crop(&mut self) -> io::Result<Crop> {
         let [x, y, width, height] = [
             self.number()?,
@@ -73,7 +73,7 @@ impl<R: Read> Source<R> {
         }
     }
 
-    /// A tile of a picture.
+    /// Reads a tile of a picture, and checks its digest.
     fn tile(&mut self, whole: Crop, side: u32) -> io::Result<Tile> {
         let place = self.crop()?;
         if !place.is_tile_of(whole, side) {
@@ -109,13 +109,13 @@ impl<R: Read> Source<R> {
     }
 }
 
-/// The header, then whole tiles; with the count of their bytes. `is_sealed` compares bytes with
-/// their digest.
+/// Reads the header, then whole tiles, and returns the part with the count of their bytes. `is_sealed`
+/// compares bytes with their digest.
 ///
 /// # Errors
 ///
-/// [`ErrorKind::InvalidData`] or [`ErrorKind::UnexpectedEof`] without a whole header, and those of
-/// the input.
+/// Returns [`ErrorKind::InvalidData`] or [`ErrorKind::UnexpectedEof`] without a whole header, and the
+/// errors of the input.
 pub(super) fn parse(
     mut input: impl BufRead,
     is_sealed: fn(&[u8], u64) -> bool,
@@ -148,7 +148,7 @@ pub(super) fn parse(
     loop {
         match source.tile(whole, side) {
             Ok(tile) if tile.is_begun() => {
-                // Row by row, as in a film.
+                // Keep tiles row by row, as in a film.
                 let [x, y] = tile.key();
                 tiles.insert([y, x], tile);
             }
@@ -166,7 +166,7 @@ pub(super) fn parse(
     Ok((part, source.whole))
 }
 
-/// Whether a file is at fault, and not the system that reads it.
+/// Returns true if a file is at fault, and not the system that reads it.
 pub(super) fn is_damage(error: &io::Error) -> bool {
     matches!(
         error.kind(),

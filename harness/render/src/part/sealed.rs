@@ -1,8 +1,8 @@
-//! Files of numbers that end in a digest of the rest.
+//! Bytes that end in a digest of the rest, and numbers read from them.
 
 use hairis_instruments::sequence::mix;
 
-/// A number that differs where bytes do, but by chance.
+/// Returns a number that differs where bytes differ, except by chance.
 pub(crate) fn digest(bytes: &[u8]) -> u64 {
     bytes.chunks(8).fold(bytes.len() as u64, |hash, chunk| {
         mix(hash
@@ -12,19 +12,19 @@ pub(crate) fn digest(bytes: &[u8]) -> u64 {
     })
 }
 
-/// Puts a digest of all bytes behind them.
+/// Appends a digest of all bytes to them.
 pub(crate) fn seal(bytes: &mut Vec<u8>) {
     let check = digest(bytes);
     bytes.extend(check.to_le_bytes());
 }
 
-/// The bytes before the digest; `None` if that is wrong.
+/// Returns the bytes before the digest, or `None` if the digest is wrong.
 pub(crate) fn unseal(bytes: &[u8]) -> Option<&[u8]> {
     let (content, check) = bytes.split_last_chunk()?;
     (digest(content) == u64::from_le_bytes(*check)).then_some(content)
 }
 
-/// Takes numbers from the front.
+/// Reader of numbers from the front of bytes.
 pub(crate) struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {

@@ -149,8 +149,8 @@ fn parts_of_one_run_join_and_others_do_not() {
     );
 }
 
-/// Tiles are appended as they get samples, and a file that is cut anywhere goes on from what is
-/// whole.
+/// Checks that tiles are appended as they get samples, and that a file that is cut anywhere continues
+/// from its whole records.
 #[test]
 fn logs_hold_what_was_saved_last() {
     let folder = tempfile::TempDir::new().expect("a folder");
@@ -194,7 +194,7 @@ fn logs_hold_what_was_saved_last() {
     assert_eq!(fs::read(&path).expect("there"), bytes);
 }
 
-/// A file does not grow without end.
+/// Checks that a file does not grow without end.
 #[test]
 fn logs_are_written_anew_when_most_of_them_is_out_of_date() {
     let folder = tempfile::TempDir::new().expect("a folder");

@@ -1,9 +1,9 @@
-//! How errors fall with samples: slopes, and samples and time to an error.
+//! Rates at which errors fall with samples: slopes, and samples and time to an error.
 
 use super::{Measure, Runs};
 use hairis_instruments::stats::Estimate;
 
-/// Mean of values but for that of one place.
+/// Returns the mean of values, except the value at one place.
 pub(super) fn average(values: impl Iterator<Item = (usize, f64)>, left_out: Option<usize>) -> f64 {
     let (sum, count) = values
         .filter(|(place, _)| Some(*place) != left_out)
@@ -13,9 +13,9 @@ pub(super) fn average(values: impl Iterator<Item = (usize, f64)>, left_out: Opti
     sum / count
 }
 
-/// A statistic of `count` runs with its standard error, from the statistic without each of them.
+/// Estimates a statistic of `count` runs with its standard error, from the statistic without each of the runs.
 ///
-/// The error of a mean is the usual one; that of a ratio of means counts how they vary together.
+/// For a mean, the standard error is the usual one. For a ratio of means, it takes into account how the means vary together.
 #[must_use]
 pub fn jackknife(count: usize, statistic: impl Fn(Option<usize>) -> f64) -> Estimate {
     let value = statistic(None);
@@ -34,7 +34,7 @@ pub fn jackknife(count: usize, statistic: impl Fn(Option<usize>) -> f64) -> Esti
     }
 }
 
-/// Slope of `log y` against `log x`.
+/// Returns the slope of `log y` against `log x`, by least squares over all points.
 #[must_use]
 pub fn slope(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
@@ -48,8 +48,8 @@ pub fn slope(points: &[(f64, f64)]) -> f64 {
     xy / xx
 }
 
-/// Abscissa at which a curve through points, straight between them in logarithms of both, first falls to a level; `None` if it begins
-/// below it, or does not reach it.
+/// Returns the abscissa at which a curve through points first falls to a level. The curve is straight between points in logarithms of both
+/// coordinates. Returns `None` if the curve begins below the level, or does not reach it.
 #[must_use]
 pub fn crossing(points: &[(f64, f64)], level: f64) -> Option<f64> {
     let (_, above) = points.first()?;
@@ -67,25 +67,25 @@ pub fn crossing(points: &[(f64, f64)], level: f64) -> Option<f64> {
     Some(x0 * (x1 / x0).powf(share))
 }
 
-/// Samples and time to an error.
+/// Samples and time at which an error falls to a level, or a bound on the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reach {
-    /// The error is lower already with this count of samples, the smallest.
+    /// The error is already lower with this count of samples, the smallest.
     Below(u32),
-    /// Samples of a pixel, and seconds of a thread.
+    /// Samples per pixel, and seconds of a thread.
     At([Estimate; 2]),
-    /// The error is higher still with this count of samples, the largest that can be told from noise of the reference.
+    /// The error is still higher with this count of samples, the largest that can be told from noise of the reference.
     Above(u32),
 }
 
-/// Selects runs whose error is not below that of the reference.
+/// Selects runs whose error is not below the reference.
 fn clear(runs: &[Runs], measure: Measure) -> Vec<&Runs> {
     runs.iter()
         .filter(|runs| !runs.is_below_reference(measure))
         .collect()
 }
 
-/// Points of an error over another number of each, without one picture.
+/// Returns the points of an error over another number of each run, without the error of one picture.
 fn points(
     runs: &[&Runs],
     measure: Measure,
@@ -97,7 +97,8 @@ fn points(
         .collect()
 }
 
-/// Samples and time at which an error falls to a level, by ascending count of samples; interpolated in logarithms.
+/// Returns the samples and the time at which an error falls to a level, interpolated in logarithms. `runs` must be in ascending order of
+/// samples. Returns `None` if every error is below the reference.
 #[must_use]
 pub fn reach(runs: &[Runs], measure: Measure, level: f64) -> Option<Reach> {
     let clear = clear(runs, measure);
@@ -117,7 +118,8 @@ pub fn reach(runs: &[Runs], measure: Measure, level: f64) -> Option<Reach> {
     })
 }
 
-/// Slope of the logarithm of an error against that of samples; `None` with less than two counts of samples.
+/// Returns the slope of the logarithm of an error against that of samples. Returns `None` if fewer than two counts of samples have an
+/// error that is not below the reference.
 #[must_use]
 pub fn slope_of(runs: &[Runs], measure: Measure) -> Option<Estimate> {
     let clear = clear(runs, measure);

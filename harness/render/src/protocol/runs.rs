@@ -1,4 +1,4 @@
-//! Renders with one sampler.
+//! Pictures rendered with one sampler, and their errors.
 
 use super::rate::{average, jackknife};
 use super::{Errors, Measure, Reference};
@@ -6,18 +6,18 @@ use crate::film::{Film, Picture};
 use crate::transport::Settings;
 use hairis_instruments::stats::{Estimate, Moments};
 
-/// Renders with one sampler at one count of samples, each with a seed of its own.
+/// Pictures rendered with one sampler at one count of samples, each with a seed of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Runs {
-    /// Samples of a pixel.
+    /// Samples per pixel.
     pub samples: u32,
-    /// Time of the fastest, in seconds of a thread.
+    /// Time of the fastest picture, in seconds of a thread.
     pub seconds: f64,
-    /// Errors of each; none for half of a reference.
+    /// Errors of each picture; empty for half of a reference.
     pub errors: Vec<Errors>,
-    /// Variance of a pixel's luminance per sample, mean over the pixels: how much the pictures differ, times their samples.
+    /// Variance of a pixel's luminance per sample, mean over the pixels: the variance between the pictures, times their samples.
     pub variance: Estimate,
-    /// The first picture.
+    /// First of the pictures.
     pub picture: Picture,
     /// Error in luminance of the pictures' mean, one per pixel; empty for half of a reference.
     pub bias: Vec<f64>,
@@ -26,12 +26,12 @@ pub struct Runs {
 }
 
 impl Runs {
-    /// Renders half of a reference: 0 or 1. `film` renders with some settings, and takes which
-    /// picture it is.
+    /// Renders half of a reference, with number 0 or 1. `film` renders with the settings that it is given, and
+    /// takes the number of the picture.
     ///
     /// # Errors
     ///
-    /// Those of `film`.
+    /// Returns the error of `film`.
     pub fn half<E>(
         settings: &Settings,
         samples: u32,
@@ -56,7 +56,7 @@ impl Runs {
     ///
     /// # Errors
     ///
-    /// Those of `film`.
+    /// Returns the first error of `film`.
     pub fn render<E>(
         settings: &Settings,
         reference: &Reference,
@@ -92,7 +92,7 @@ impl Runs {
             };
             pixels.clone().map(pixel).collect()
         };
-        // The reference is one number per pixel: errors vary as luminances do.
+        // The reference is one number per pixel, so that errors vary as luminances do.
         let variance = |kept: Option<usize>| {
             let errors = || {
                 errors
@@ -122,7 +122,7 @@ impl Runs {
         }
     }
 
-    /// Mean of an error over the pictures but one.
+    /// Returns the mean of an error over the pictures, except one.
     pub(super) fn mean_without(&self, measure: Measure, left_out: Option<usize>) -> f64 {
         average(
             self.errors
@@ -133,7 +133,7 @@ impl Runs {
         )
     }
 
-    /// Mean of an error over the pictures, with its standard error.
+    /// Returns the mean of an error over the pictures, with its standard error.
     #[must_use]
     pub fn mean(&self, measure: Measure) -> Estimate {
         jackknife(self.errors.len(), |kept| self.mean_without(measure, kept))
@@ -154,7 +154,7 @@ impl Runs {
         })
     }
 
-    /// Whether an error is too small for the noise of the reference: below twice what that noise adds to it.
+    /// Returns true if an error is below the reference: less than twice what noise of the reference adds to the error.
     #[must_use]
     pub fn is_below_reference(&self, measure: Measure) -> bool {
         let own = average(
@@ -167,7 +167,7 @@ impl Runs {
         self.mean(measure).value < 2.0 * own
     }
 
-    /// Samples that fit into a time, in seconds of a thread: at least 1.
+    /// Returns the count of samples that fits into a time, in seconds of a thread, but at least 1.
     #[must_use]
     pub fn samples_in(&self, seconds: f64) -> u32 {
         let samples = f64::from(self.samples) * seconds / self.seconds.max(1e-9);

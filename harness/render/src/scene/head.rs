@@ -1,4 +1,4 @@
-//! Heads that hair grows on.
+//! Heads on which hair grows: ellipsoids and meshes of skin.
 
 use crate::geometry::{Bounds, Mesh};
 use crate::tree::{MeshTree, Ray};
@@ -6,29 +6,29 @@ use glam::Vec3;
 use hairis::Vec3x8;
 use hairis::simd::f32x8;
 
-/// A head that reflects as Lambert's law says.
+/// Head that reflects light by Lambert's law.
 #[derive(Clone, Debug)]
 pub struct Head {
-    /// Its surface.
+    /// Surface of the head.
     pub shape: Shape,
-    /// Share of the light that it reflects.
+    /// Share of the light that the head reflects.
     pub albedo: Vec3,
 }
 
-/// The surface of a head.
+/// Surface of a head: an ellipsoid or a mesh.
 #[derive(Clone, Debug)]
 pub enum Shape {
-    /// An ellipsoid, seen from outside.
+    /// Ellipsoid, which rays meet from outside.
     Ellipsoid(Ellipsoid),
-    /// Triangles, seen from either side.
+    /// Triangles, which rays meet from either side.
     Mesh(Box<(Mesh, MeshTree)>),
 }
 
 impl Head {
-    /// The colour of skin.
+    /// Albedo of skin, which heads have unless it is changed.
     pub const SKIN: Vec3 = Vec3::new(0.45, 0.32, 0.25);
 
-    /// An ellipsoid of skin.
+    /// Creates a head from an ellipsoid, with the albedo of skin.
     #[must_use]
     pub fn ellipsoid(ellipsoid: Ellipsoid) -> Self {
         Self {
@@ -37,7 +37,7 @@ impl Head {
         }
     }
 
-    /// A mesh of skin.
+    /// Creates a head from a mesh, with the albedo of skin, and builds the tree of the mesh.
     #[must_use]
     pub fn mesh(mesh: Mesh) -> Self {
         let tree = MeshTree::build(&mesh);
@@ -47,7 +47,7 @@ impl Head {
         }
     }
 
-    /// Number of its triangles.
+    /// Returns the number of triangles, which is 0 for an ellipsoid.
     #[must_use]
     pub fn triangles(&self) -> usize {
         match &self.shape {
@@ -56,7 +56,7 @@ impl Head {
         }
     }
 
-    /// The smallest box that holds it.
+    /// Returns the smallest box that holds the head.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         match &self.shape {
@@ -68,7 +68,7 @@ impl Head {
         }
     }
 
-    /// Distance along a ray to the head, and the unit normal there on the side of the ray.
+    /// Returns the distance along a ray to the head, and the unit normal there on the side of the ray.
     #[inline]
     #[must_use]
     pub fn meet(&self, ray: &Ray) -> Option<(f32, Vec3)> {
@@ -87,7 +87,7 @@ impl Head {
         }
     }
 
-    /// Whether a ray meets the head.
+    /// Returns true if a ray meets the head before the ray ends.
     #[inline]
     #[must_use]
     pub fn blocks(&self, ray: &Ray) -> bool {
@@ -100,17 +100,17 @@ impl Head {
     }
 }
 
-/// An ellipsoid along the axes, seen from outside.
+/// Ellipsoid along the axes, which rays meet from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid {
-    /// Its centre.
+    /// Centre of the ellipsoid.
     pub centre: Vec3,
-    /// Half lengths of its axes.
+    /// Half lengths of the ellipsoid's axes.
     pub radii: Vec3,
 }
 
 impl Ellipsoid {
-    /// Distance along a ray, if it meets the ellipsoid from outside beyond `t_min`.
+    /// Returns the distance along a ray, if the ray meets the ellipsoid from outside beyond `t_min`.
     #[inline]
     #[must_use]
     pub fn meet(&self, origin: Vec3, direction: Vec3, t_min: f32) -> Option<f32> {
@@ -121,8 +121,8 @@ impl Ellipsoid {
         (discriminant >= 0.0 && t > t_min).then_some(t)
     }
 
-    /// Tests eight rays from a point before their ends: a mask, bit for bit what
-    /// [`meet`](Self::meet) says.
+    /// Tests eight rays from a point up to their ends. Returns a mask that agrees bit for bit with
+    /// [`meet`](Self::meet).
     #[inline]
     #[must_use]
     pub fn blocks8(&self, origin: Vec3, direction: &Vec3x8, t_max: &f32x8) -> f32x8 {
@@ -143,7 +143,7 @@ impl Ellipsoid {
         discriminant.simd_ge(c(0.0)) & t.simd_gt(c(0.0)) & t.simd_lt(*t_max)
     }
 
-    /// Unit normal at a point of the surface.
+    /// Returns the unit normal at a point of the surface.
     #[inline]
     #[must_use]
     pub fn normal(&self, point: Vec3) -> Vec3 {

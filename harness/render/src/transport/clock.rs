@@ -1,8 +1,8 @@
-//! Time of a thread.
+//! Clock of the time that a thread has worked.
 
-/// Time that this thread has worked, in seconds from any start: what other programs take of the machine does not count.
+/// Returns the time that this thread has worked, in seconds from any start. Time that other programs take of the machine does not count.
 ///
-/// Where the system has no such clock, wall time.
+/// If the system has no such clock, the result is wall time.
 #[must_use]
 pub fn seconds_of_thread() -> f64 {
     #[cfg(unix)]

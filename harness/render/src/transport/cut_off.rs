@@ -1,4 +1,4 @@
-//! Light that paths of a finite depth leave out.
+//! Estimate of the light that paths of a finite depth leave out.
 
 use super::path;
 use super::wave::Wave;
@@ -12,11 +12,11 @@ use hairis_instruments::sequence::Independent;
 use hairis_instruments::stats::{Estimate, Moments};
 use rayon::prelude::*;
 
-/// Most paths that are followed beyond the depth.
+/// Largest number of paths that are followed beyond the depth.
 const PATHS: usize = 1 << 14;
-/// Paths of a wave.
+/// Number of paths in a wave.
 const WAVE: usize = 1 << 10;
-/// Largest share of the light that may be missing without a word.
+/// Largest share of the light that may be missing without a remark.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// Shares of the red, green and blue light of a picture that lie beyond a depth.
@@ -27,13 +27,13 @@ pub struct CutOff {
 }
 
 impl CutOff {
-    /// The shares.
+    /// Returns the shares of red, green and blue light, with standard errors.
     #[must_use]
     pub fn shares(&self) -> [Estimate; 3] {
         self.shares
     }
 
-    /// Whether a share is too large to be passed over. A share that is not known is.
+    /// Returns true if a share is too large to be passed over, or is not known.
     #[must_use]
     pub fn is_notable(&self) -> bool {
         let is_small = |share: &Estimate| share.value <= NEGLIGIBLE;
@@ -56,11 +56,11 @@ impl fmt::Display for CutOff {
     }
 }
 
-/// Estimates what the depth of a film's paths has left out; `None` if they have any length, or if
-/// the film has no samples.
+/// Estimates the light that the depth of a film's paths has left out. Returns `None` if no depth limits
+/// paths, or if the film has no samples.
 ///
-/// Some of the film's paths, evenly chosen, are followed to their ends; what they find beyond the
-/// depth counts.
+/// Some of the film's paths, evenly chosen, are followed to their ends, and the light that they find
+/// beyond the depth counts.
 #[must_use]
 pub fn cut_off(scene: &Scene, settings: &Settings, film: &Film) -> Option<CutOff> {
     let depth = settings.depth?;
@@ -76,7 +76,7 @@ pub fn cut_off(scene: &Scene, settings: &Settings, film: &Film) -> Option<CutOff
         let of_pixel = |pixel| (0..per_pixel).map(move |sample| (pixel, sample));
         paths.extend(pixels().flat_map(of_pixel));
     } else {
-        // One pixel at random of each of `PATHS` equal shares.
+        // Choose one pixel at random from each of `PATHS` equal shares.
         let all: Vec<[u32; 2]> = pixels().collect();
         let mut xi = Independent::new(settings.seed, 0);
         let edge = |place: usize| place * count / PATHS;

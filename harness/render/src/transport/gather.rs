@@ -1,4 +1,4 @@
-//! The paper's protocol for direct light: fixed camera rays, and many samples at each shading point.
+//! Direct light by the paper's protocol: fixed camera rays, and many samples at each shading point.
 
 use super::path::leave;
 use super::profile::{Phase, lap};
@@ -14,28 +14,28 @@ use glam::Vec3;
 use hairis::{FiberFrame, FiberFrame8, Hit};
 use hairis_instruments::direction::cosine;
 
-/// Seed of the camera rays: one for all pictures, so that they differ by their samples alone.
+/// Seed of the camera rays, which all pictures share, so that they differ by their samples alone.
 const CAMERA_SEED: u64 = 0x6361_6d65_7261;
 
-/// Hit of a camera ray on hair.
+/// Shading point: the hit of a camera ray on hair.
 struct Point {
     hit: tree::Hit,
     origin: Vec3,
     frame: FiberFrame8,
     prepared: Prepared,
-    /// Key of its uniform numbers.
+    /// Key of the point's uniform numbers.
     key: u64,
 }
 
-/// Samples that are drawn side by side: whole pools of candidates.
+/// Number of samples that are drawn side by side: whole pools of candidates.
 const STEP: usize = POOL as usize;
 
-/// Adds estimates of the direct light of hair until there are `samples` of each pixel. A sample is the mean over the camera
-/// rays of one light and one BSDF sample each, or of one resampled ray each. Pixels without hair are black, except for lights
-/// that the camera sees.
+/// Adds estimates of the direct light of hair until each pixel has `samples`. A sample is the mean over the camera rays, each with
+/// one light and one BSDF sample, or with one resampled ray. Pixels without hair are black, except for lights that the camera
+/// sees.
 ///
 /// The last pool of resampled rays is smaller unless the count is a multiple of [`POOL`]. A tile that ends in such a pool is
-/// made again from the first sample.
+/// rendered again from the first sample.
 pub(super) fn tile(
     scene: &Scene,
     tables: &Tables<'_>,
@@ -74,7 +74,7 @@ pub(super) fn tile(
     tile.samples = samples;
 }
 
-/// Finds where the camera rays of a pixel meet hair. Returns the sum of what the others see.
+/// Finds the points where the camera rays of a pixel meet hair. Returns the sum of the radiance along the other rays.
 fn points_of(scene: &Scene, settings: &Settings, pixel: [u32; 2], points: &mut Vec<Point>) -> Vec3 {
     points.clear();
     let mut beside = Vec3::ZERO;
@@ -85,7 +85,7 @@ fn points_of(scene: &Scene, settings: &Settings, pixel: [u32; 2], points: &mut V
         let met = scene.closest(&camera_ray);
         lap(Phase::Rays);
         match met {
-            // Pixels have 14 bits a side, and rays 12: keys differ.
+            // Pixels have 14 bits a side, and rays 12, so that keys differ.
             Met::Hair(hit) => points.push(Point::new(
                 scene,
                 &camera_ray,
@@ -141,7 +141,7 @@ impl Point {
         }
     }
 
-    /// Adds the light of a pool of rays, chosen from candidates. Each ray's light times their count is a sample.
+    /// Adds the light of a pool of rays, chosen from candidates. The light of each ray, times the count of rays, is a sample.
     fn resampled(
         &self,
         scene: &Scene,
@@ -192,7 +192,7 @@ impl Point {
         );
     }
 
-    /// Whether nothing is in the way of the point, in a direction of inclination `cos_theta`, up to a distance.
+    /// Returns true if nothing blocks the point in a direction of inclination `cos_theta`, up to a distance.
     #[inline]
     fn sees(&self, scene: &Scene, direction: Vec3, cos_theta: f32, distance: f32) -> bool {
         let ray = leave(

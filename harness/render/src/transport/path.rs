@@ -1,4 +1,4 @@
-//! Paths, and direct light as their shortest.
+//! Paths of any length, and direct light as the shortest of them.
 
 use super::profile::{Phase, lap};
 use super::wave::{Path, Shadow, Wave};
@@ -12,9 +12,9 @@ use hairis::simd::f32x8;
 use hairis::{FiberFrame8, Hit8, Vec3x8};
 use hairis_instruments::direction::cosine;
 
-/// Scatterings before paths may end at random.
+/// Number of scatterings before paths may end at random.
 const FIRST_ROULETTE: u32 = 4;
-/// Most paths that a camera ray is split into.
+/// Largest number of paths into which a camera ray is split.
 pub(super) const MOST_PARTS: u32 = 64;
 
 /// Follows all paths of a wave to their ends, or to the depth.
@@ -29,7 +29,7 @@ pub(super) fn run(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave:
     scatter(scene, tables, settings, wave, 0, depth);
 }
 
-/// Goes on with the paths of a wave that [`run`] has followed to a depth, to their ends. Only light
+/// Continues the paths of a wave that [`run`] has followed to a depth, to their ends. Only light
 /// beyond the depth counts.
 pub(super) fn run_beyond(
     scene: &Scene,
@@ -42,8 +42,8 @@ pub(super) fn run_beyond(
     scatter(scene, tables, settings, wave, depth, None);
 }
 
-/// Scatters paths that have met something, `first` scatterings behind them, until they have ended
-/// or have a count of scatterings.
+/// Scatters paths that have met something, after `first` scatterings, until they have ended or have
+/// `depth` scatterings.
 fn scatter(
     scene: &Scene,
     tables: &Tables<'_>,
@@ -74,7 +74,7 @@ fn scatter(
     }
 }
 
-/// Finds what every ray meets, and counts the light that it sees.
+/// Finds the object that every ray meets, and adds the light along the ray.
 fn trace(scene: &Scene, settings: &Settings, wave: &mut Wave, is_first: bool) {
     wave.met.clear();
     wave.met
@@ -100,7 +100,7 @@ fn trace(scene: &Scene, settings: &Settings, wave: &mut Wave, is_first: bool) {
     lap(Phase::Light);
 }
 
-/// Scatters at surfaces; puts the hits of hair into the queue, and ends the paths that go no further.
+/// Scatters paths at surfaces, puts the hits of hair into the queue, and ends the paths that go no further.
 pub(super) fn surfaces(scene: &Scene, settings: &Settings, wave: &mut Wave) {
     wave.hits.clear();
     for (k, (path, met)) in (0..).zip(wave.paths.iter_mut().zip(&wave.met)) {
@@ -118,7 +118,7 @@ pub(super) fn surfaces(scene: &Scene, settings: &Settings, wave: &mut Wave) {
     lap(Phase::Rest);
 }
 
-/// Scatters at a surface as Lambert's law says: the light that it receives, and the path's next ray.
+/// Scatters a path at a surface by Lambert's law: returns the light that the surface receives, and sets the path's next ray.
 fn reflect(
     scene: &Scene,
     settings: &Settings,
@@ -158,7 +158,7 @@ fn reflect(
     shadow
 }
 
-/// Eight hits of a queue: their frames and places. Lanes that have no hit repeat the first.
+/// Packet of eight hits of a queue, with their frames and origins. Lanes that have no hit repeat the first.
 pub(super) struct Packet {
     pub(super) frames: FiberFrame8,
     pub(super) origins: [Vec3; 8],
@@ -186,7 +186,7 @@ impl Packet {
     }
 }
 
-/// Scatters at hair, eight hits at a time. Lanes of the last packet that have no hit repeat its first.
+/// Scatters paths at hair, eight hits at a time. Lanes of the last packet that have no hit repeat its first.
 fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave) {
     let Wave {
         paths,
@@ -217,7 +217,7 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
 
         lap(Phase::Numbers);
 
-        // What the lights add.
+        // Light that the lights add.
         if settings.mis == Mis::Resampled {
             let sample = |lane: usize| paths[lanes(lane).0 as usize].numbers.sample();
             let tables = core::array::from_fn(|lane| tables.of_pass(sample(lane) / PASS));
@@ -304,7 +304,7 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
     }
 }
 
-/// A ray that leaves a fibre, in a direction of inclination `cos_theta`, and ends at a distance.
+/// Returns a ray that leaves a fibre, in a direction of inclination `cos_theta`, and ends at a distance.
 #[inline]
 pub(super) fn leave(
     scene: &Scene,
@@ -327,19 +327,19 @@ pub(super) fn leave(
     }
 }
 
-/// Removes paths that have ended. With `roulette`, keeps the throughputs of the others about that
+/// Removes paths that have ended. With `roulette`, keeps the throughputs of the others close to that
 /// of a camera ray, which is 1: a path whose largest channel `t` is
 ///
-/// - below 1 survives with probability `t`, and its throughput is divided by that. A path that
-///   nothing has absorbed never ends at random, and survival never raises a channel above 1: a cap
-///   on the probability would multiply throughputs without end, with infinite variance where fewer
-///   paths leave hair per scattering than the cap ends;
-/// - 2 or more goes on as `floor(t)` paths of equal parts, as far as the camera ray's
+/// - below 1 survives with probability `t`, and its throughput is divided by `t`. A path that nothing
+///   has absorbed never ends at random, and survival never raises a channel above 1. A cap on the
+///   probability would multiply throughputs without end, with infinite variance where fewer paths leave
+///   hair per scattering than the cap ends;
+/// - 2 or more continues as `floor(t)` paths of equal parts, as far as the camera ray's
 ///   [`MOST_PARTS`] allow. Weights of a sampler are 1 on average, but over scatterings without end
 ///   their products have infinite variance.
 ///
-/// Both are relative to the camera ray and not to the scattering before, which would keep what one
-/// weight has raised and end what the next lowers.
+/// Both rules are relative to the camera ray and not to the scattering before, which would keep what
+/// one weight has raised and end what the next lowers.
 pub(super) fn end_some(wave: &mut Wave, roulette: bool) {
     let Wave { paths, parts, .. } = wave;
     paths.retain_mut(|path| {

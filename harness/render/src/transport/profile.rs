@@ -4,7 +4,7 @@ use core::cell::Cell;
 use core::fmt;
 use std::time::Instant;
 
-/// A kind of work.
+/// Kind of work whose time a profile measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// Finding what rays meet, and whether anything is in their way.
@@ -25,7 +25,7 @@ pub enum Phase {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Profile {
     seconds: [f64; Self::PHASES.len()],
-    /// Rays towards a light.
+    /// Number of rays towards a light.
     towards: u64,
     /// Number of rays that reach it.
     reached: u64,
@@ -41,7 +41,7 @@ impl Profile {
         (Phase::Rest, "rest"),
     ];
 
-    /// Adds those of another.
+    /// Adds the times and the counts of rays of another profile.
     pub fn add(&mut self, other: Self) {
         self.seconds
             .iter_mut()
@@ -51,13 +51,13 @@ impl Profile {
         self.reached += other.reached;
     }
 
-    /// Share of a phase, from 0 to 1.
+    /// Returns the share of the time that a phase took, from 0 to 1.
     #[must_use]
     pub fn share(&self, phase: Phase) -> f64 {
         self.seconds[phase as usize] / self.seconds.iter().sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
-    /// Share of the rays towards lights that reach them, from 0 to 1; 0 without any.
+    /// Returns the share of the rays towards lights that reach them, from 0 to 1, which is 0 without any.
     #[must_use]
     pub fn visible(&self) -> f64 {
         self.reached as f64 / self.towards.max(1) as f64
@@ -91,13 +91,13 @@ pub(super) fn start() {
     LAST.set(Some(Instant::now()));
 }
 
-/// Ends it.
+/// Ends the measurement of this thread, and returns its profile.
 pub(super) fn stop() -> Profile {
     LAST.set(None);
     SUMS.get()
 }
 
-/// Counts the time since the last lap as `phase`. Costs next to nothing where nothing is measured, and 30 ns where it is.
+/// Counts the time since the last lap as `phase`, which costs next to nothing if nothing is measured, and otherwise 30 ns.
 #[inline]
 pub(super) fn lap(phase: Phase) {
     if let Some(last) = LAST.get() {
@@ -114,7 +114,7 @@ fn count(phase: Phase, last: Instant) {
     LAST.set(Some(now));
 }
 
-/// Counts a ray towards a light.
+/// Counts a ray towards a light, if this thread is measured.
 #[inline]
 pub(super) fn count_ray(reached: bool) {
     if LAST.get().is_some() {

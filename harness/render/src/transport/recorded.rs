@@ -1,4 +1,4 @@
-//! Paths whose light is written as a polynomial in the scattering at hair, to be evaluated for many materials.
+//! Paths whose light is recorded as a polynomial in the scattering at hair, to be evaluated for many materials.
 
 use super::path::{Packet, end_some, leave, surfaces};
 use super::wave::{Shadow, Wave};
@@ -9,44 +9,44 @@ use glam::Vec3;
 use hairis::Vec3x8;
 use hairis_instruments::direction::cosine;
 
-/// Most scatterings at hair of a term.
+/// Largest number of scatterings at hair of a term.
 const MOST: usize = 2;
-/// Place in [`Term::at`] of a scattering that there is not.
+/// Entry of [`Term::at`] where there is no scattering.
 const NONE: u32 = u32::MAX;
 
-/// Light of a path: `factor` times S at each of the directions.
+/// Light of a path: `factor` times the BSDF S at each of the path's scatterings at hair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Term {
-    /// Place of the pixel in the crop.
+    /// Index of the pixel in the crop.
     pub pixel: u32,
-    /// Everything but S, linear RGB: light, cosines, albedos of surfaces, and weights over densities.
+    /// Product of everything but S, linear RGB: light, cosines, albedos of surfaces, and weights over densities.
     pub factor: Vec3,
     at: [u32; MOST],
 }
 
 impl Term {
-    /// Places among the directions of the scatterings at hair; one or two.
+    /// Iterates over the scatterings at hair, one or two, as indices of the recorded directions.
     pub fn scatterings(&self) -> impl Iterator<Item = usize> + Clone {
         let places = self.at.into_iter().take_while(|at| *at != NONE);
         places.map(|at| at as usize)
     }
 }
 
-/// Recorded paths of a part of a picture: sums over the samples of each pixel.
+/// Recorded paths of a part of a picture, as sums over the samples of each pixel.
 ///
-/// The directions were drawn with one material, and so were densities and the weights of multiple importance sampling. They stay as
-/// they are, so that the sums are unbiased for any material.
+/// The directions, the densities and the weights of multiple importance sampling are those of one material. They stay as they are for
+/// other materials, so that the sums are unbiased for any material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recorded {
     /// Light that hair has not scattered, a sum per pixel, row by row.
     pub beside: Vec<[f64; 3]>,
     /// Light that hair has scattered once or twice.
     pub terms: Vec<Term>,
-    /// Directions to the viewer in the frame of the fibre: u, v, w.
+    /// Directions to the viewer in the frame of the fibre, by component: u, v, w.
     pub wo: [Vec<f32>; 3],
-    /// Offsets of the hits.
+    /// Offsets of the hits across the fibre.
     pub h: Vec<f32>,
-    /// Directions to the light: u, v, w.
+    /// Directions to the light in the frame of the fibre, by component: u, v, w.
     pub wi: [Vec<f32>; 3],
 }
 
@@ -54,7 +54,7 @@ pub struct Recorded {
 #[derive(Clone, Copy, Default)]
 struct Pair {
     numbers: [f32; 7],
-    /// Its place, once a term has it.
+    /// Index of the pair, once a term has it.
     place: Option<u32>,
 }
 
@@ -85,7 +85,7 @@ impl Chain {
 impl Recorded {
     /// Adds light that has come along a chain.
     fn add(&mut self, pixel: usize, factor: Vec3, chain: &mut Chain) {
-        // What overflows is left out, as the renderer would.
+        // Light that overflows is left out, as in the renderer.
         if factor.max_element() <= 0.0 || !factor.is_finite() {
             return;
         }
@@ -106,7 +106,7 @@ impl Recorded {
         });
     }
 
-    /// Adds a pair of directions.
+    /// Appends a pair of directions, and returns its index.
     fn place(&mut self, numbers: &[f32; 7]) -> u32 {
         let place = u32::try_from(self.h.len()).expect("fewer than 2^32 directions");
         let (wo, h, wi) = (&mut self.wo, &mut self.h, &mut self.wi);
@@ -118,14 +118,14 @@ impl Recorded {
     }
 }
 
-/// Records the paths of a part of a picture, of at most two scatterings (`settings.depth`, and two without one). The sampler is that
-/// of the scene's hair, whose energy must be raw.
+/// Records the paths of a part of a picture, with at most `settings.depth` scatterings, or two without a depth. Directions are drawn by
+/// the sampler of the scene's hair, whose energy must be raw.
 ///
-/// With the material of the scene, the sums are those of a film that was rendered with these settings, but for rounding.
+/// With the material of the scene, the sums are those of a film that was rendered with these settings, except for rounding.
 ///
 /// # Panics
 ///
-/// If a depth above 2 or resampled light is asked for.
+/// Panics if `settings` has a depth above 2 or resampled light.
 #[must_use]
 pub fn record(scene: &Scene, settings: &Settings, crop: Crop, samples: u32) -> Recorded {
     assert!(
@@ -178,7 +178,7 @@ pub fn record(scene: &Scene, settings: &Settings, crop: Crop, samples: u32) -> R
     recorded
 }
 
-/// Scatters at hair. Throughputs are without S, and `add` takes light along a chain.
+/// Scatters paths at hair. Throughputs are without S, and `add` takes light along a chain.
 fn hair(
     scene: &Scene,
     settings: &Settings,
@@ -236,7 +236,7 @@ fn hair(
                 if radiance.max_element() > 0.0 {
                     add(&shadow, &mut chain);
                 }
-                // The place of what comes before stays known.
+                // Keep the indices of the scatterings before this one.
                 let first = chains[slot as usize].len;
                 chains[slot as usize].pairs[..first].copy_from_slice(&chain.pairs[..first]);
             }

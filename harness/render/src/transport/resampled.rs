@@ -1,4 +1,4 @@
-//! Direct light by resampling: rays are traced for the candidates that would bring the most light.
+//! Direct light by resampling: rays are traced for the candidates that would contribute the most light.
 
 mod candidates;
 mod cells;
@@ -17,7 +17,7 @@ use hairis::simd::f32x8;
 use hairis::{Eval8, FiberFrame8, Vec3x8};
 use hairis_instruments::direction::cosine;
 
-/// Candidates of each technique per ray, where one shading point has many.
+/// Candidates of each technique per ray, at a shading point of many rays.
 ///
 /// Measured at 16 rays, mean of four maps: with 1, 2, 3 and 4 the efficiency is 1.8, 2.6, 2.9 and 2.9 times that of light and BSDF samples
 /// combined (MSE), and 1.7, 2.1, 2.0 and 1.9 times (trimmed relMSE).
@@ -25,26 +25,26 @@ const PER_RAY: u32 = 3;
 /// Candidates of the lights for one ray of a path.
 const OF_LIGHTS: usize = 8;
 
-/// A direction that may be worth a ray.
+/// Direction that may be worth a ray.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     /// Unit direction.
     pub(super) direction: Vec3,
-    /// Cosine of its inclination.
+    /// Cosine of the direction's inclination.
     pub(super) cos: f32,
     /// Distance to the light.
     pub(super) distance: f32,
 }
 
-/// Rays of a pool, at most: a shading point of more rays has several pools.
+/// Largest number of rays of a pool; a shading point of more rays has several pools.
 pub(super) const POOL: u32 = 32;
-/// Rays of a shading point that read one table of the sky.
+/// Number of rays of a shading point that read one table of the sky.
 pub(super) const PER_TABLE: u32 = 16 * POOL;
-/// Candidates of a pool, at most.
+/// Largest number of candidates of a pool.
 const MOST: usize = 2 * (PER_RAY * POOL) as usize;
 
-/// Directions of a table of the sky: ten times as many as the rays of a shading point read, of which each point sees some. 0.5 MB,
-/// and 128 kB for a pass of paths.
+/// Returns the number of directions of a table of the sky: ten times as many as the rays of a shading point read, of which each point
+/// reads some. A table takes 0.5 MB, or 128 kB for a pass of paths.
 pub(super) fn length(integrator: Integrator) -> usize {
     match integrator {
         Integrator::Gather => 1 << 14,
@@ -52,18 +52,18 @@ pub(super) fn length(integrator: Integrator) -> usize {
     }
 }
 
-/// Numbers of a shading point.
+/// Sequences of numbers of a shading point.
 pub(super) struct Streams {
     light: Even<3>,
     bsdf: Even<3>,
-    /// Place in the table of the sky that it reads, as a share of its length.
+    /// Place in the table of the sky from which the point reads, as a share of the table's length.
     place: f32,
     /// Numbers that choose, one per pool, along the first axis.
     choice: Even<3>,
 }
 
 impl Streams {
-    /// From eight numbers.
+    /// Creates the sequences from eight numbers of a path.
     pub(super) fn new(numbers: &mut Numbers) -> Self {
         let [x, y, choice, u] = numbers.four();
         let [lobe, theta, phi, place] = numbers.four();
@@ -76,10 +76,10 @@ impl Streams {
     }
 }
 
-/// A shading point whose light is resampled.
+/// Shading point whose light is resampled.
 pub(super) struct Place<'a> {
     pub(super) scene: &'a Scene,
-    /// Directions towards the sky.
+    /// Table of directions towards the sky, if there is a sky.
     pub(super) table: Option<&'a Table>,
     pub(super) origin: Vec3,
     pub(super) frame: &'a FiberFrame8,
@@ -87,8 +87,8 @@ pub(super) struct Place<'a> {
 }
 
 impl Candidates {
-    /// Calls `trace` with the directions that are worth one of the `rays` rays of a pool, and the radiance that each brings unless it
-    /// is blocked. Their sum is an estimate of the light of the point.
+    /// Calls `trace` with the directions that are worth one of the `rays` rays of a pool, and with the radiance that each contributes
+    /// unless it is blocked. The sum of the contributions that are not blocked is an estimate of the light of the point.
     pub(super) fn pool(
         &mut self,
         place: &Place<'_>,
@@ -106,7 +106,7 @@ impl Candidates {
         }
     }
 
-    /// Draws and weighs `each` candidates of each technique, after those that the point had `before`.
+    /// Draws and weighs `each` candidates of each technique, after the `before` candidates that the point already had.
     fn draw(&mut self, place: &Place<'_>, streams: &Streams, before: u32, each: u32) {
         let Place {
             scene,
@@ -160,8 +160,8 @@ impl Candidates {
     }
 }
 
-/// One of [`OF_LIGHTS`] candidates of the lights for each of eight hits, and the radiance that it brings unless it is
-/// blocked: the lights' share by the power heuristic, whose rest is the path's next ray's.
+/// Chooses one of [`OF_LIGHTS`] candidates of the lights for each of eight hits, and returns it with the radiance that it contributes
+/// unless it is blocked. By the power heuristic, this is the lights' share, and the path's next ray has the rest.
 pub(super) fn of_lights(
     scene: &Scene,
     tables: &[Option<&Table>; 8],
@@ -179,7 +179,7 @@ pub(super) fn of_lights(
     let mut contribution = [[[0.0; OF_LIGHTS]; 3]; 8];
     let mut weight = [[0.0; OF_LIGHTS]; 8];
     let even = numbers.map(|[x, y, choice, _]| Even::cube([x, y, choice]));
-    // A block is the candidates of one hit.
+    // A block holds the candidates of one hit.
     let block = |lane: usize| tables[lane].map(|table| table.block(table.place(numbers[lane][0])));
     let blocks = tables[0].is_some().then(|| core::array::from_fn(block));
     for (k, i) in (0..OF_LIGHTS).zip(0..) {
@@ -220,7 +220,7 @@ pub(super) fn of_lights(
     })
 }
 
-/// Lane `k` of each of eight blocks.
+/// Returns lane `k` of each of eight blocks.
 #[inline]
 fn transposed(blocks: &[Option<&LightSample8>; 8], k: usize) -> LightSample8 {
     let lanes = |of: fn(&LightSample8) -> &f32x8| {

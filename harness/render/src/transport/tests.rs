@@ -1,4 +1,4 @@
-//! Light drawn from tables against light drawn at each point.
+//! Comparison of light drawn from tables with light drawn at each point.
 
 use super::*;
 use crate::hair::{Choice, Energy};
@@ -10,7 +10,7 @@ use hairis_instruments::sequence::{Independent, XiSource as _};
 use hairis_instruments::stats::{Estimate, Moments};
 use rayon::prelude::*;
 
-/// A few strands on a head under a map with bright texels; with two lamps as well.
+/// Returns a few strands on a head under a map with bright texels, with or without two lamps.
 fn under_map(lamps: bool) -> Scene {
     let mut xi = Independent::new(21, 0);
     let bright = |k: usize| {
@@ -53,7 +53,7 @@ fn under_map(lamps: bool) -> Scene {
     scene
 }
 
-/// Mean luminance of pictures of many seeds, whose first tables have densities that are wrong by a factor.
+/// Returns the mean luminance of pictures of many seeds, whose first tables have densities that are wrong by a factor.
 fn mean(scene: &Scene, integrator: Integrator, mis: Mis, samples: u32, factor: f32) -> Estimate {
     let luminance = |seed: u64| -> f64 {
         let settings = Settings {
@@ -86,7 +86,7 @@ fn mean(scene: &Scene, integrator: Integrator, mis: Mis, samples: u32, factor: f
     all.into_iter().collect::<Moments>().mean_estimate()
 }
 
-/// Distance of two estimates in standard errors.
+/// Returns the distance of two estimates in standard errors.
 fn apart(a: &Estimate, b: &Estimate) -> f64 {
     (a.value - b.value) / a.standard_error.hypot(b.standard_error)
 }

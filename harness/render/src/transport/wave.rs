@@ -1,4 +1,4 @@
-//! The paths of a tile that are followed side by side.
+//! Paths of a tile that are followed side by side.
 
 use super::path::MOST_PARTS;
 use super::{Settings, key};
@@ -7,7 +7,7 @@ use crate::scene::{Met, Scene};
 use crate::tree::{self, Ray};
 use glam::Vec3;
 
-/// A path on its way.
+/// Path on its way through the scene.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Path {
     pub(super) ray: Ray,
@@ -15,7 +15,7 @@ pub(super) struct Path {
     pub(super) throughput: Vec3,
     /// Density with which the ray's direction was drawn, per steradian.
     pub(super) pdf: f32,
-    /// Place of the sample in the wave.
+    /// Index of the sample in the wave.
     pub(super) slot: u32,
     pub(super) numbers: Numbers,
     /// Whether the ray comes from hair.
@@ -23,11 +23,11 @@ pub(super) struct Path {
     /// Number that decides whether the path goes on.
     pub(super) roulette: f32,
     pub(super) alive: bool,
-    /// Most paths that it may be split into.
+    /// Largest number of paths into which this path may be split.
     pub(super) parts: u32,
 }
 
-/// A ray to a light, and what the light adds to a sample if nothing is between.
+/// Ray to a light, and the radiance that the light adds to a sample if nothing is between.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shadow {
     pub(super) ray: Ray,
@@ -40,16 +40,16 @@ pub(super) struct Shadow {
 pub(super) struct Wave {
     pub(super) paths: Vec<Path>,
     pub(super) met: Vec<Met>,
-    /// Paths that met hair, and where.
+    /// Paths that met hair, with their hits.
     pub(super) hits: Vec<(u32, tree::Hit)>,
     pub(super) shadows: Vec<Shadow>,
-    /// Parts of paths that were split, before they are paths.
+    /// Parts of paths that were split, before they join the paths.
     pub(super) parts: Vec<Path>,
     radiances: Vec<Vec3>,
 }
 
 impl Wave {
-    /// Camera rays, each of a sample of a pixel.
+    /// Starts the paths with camera rays, each for a sample of a pixel.
     pub(super) fn start(
         &mut self,
         scene: &Scene,
@@ -88,7 +88,7 @@ impl Wave {
         self.radiances[slot as usize] += radiance;
     }
 
-    /// The samples, in the order of the camera rays.
+    /// Returns the radiance of the samples, in the order of the camera rays.
     pub(super) fn radiances(&self) -> &[Vec3] {
         &self.radiances
     }

@@ -1,4 +1,4 @@
-//! Eight segments, and which of them a ray meets.
+//! Blocks of eight segments, and the test of a ray against them.
 
 use super::build::slack;
 use super::ray::{Hit, Meet, Ray, Spread};
@@ -20,27 +20,27 @@ pub(super) struct Block {
     strand: [u32; 8],
 }
 
-/// Content of the leaves of a tree.
+/// Content of the leaves of a tree: eight segments or triangles.
 pub(super) trait Leaf {
-    /// A hit of one of them.
+    /// Hit of one of the primitives.
     type Hit;
 
-    /// Which of the eight the ray meets before `limit`: lanes as bits, distances, and places along
-    /// what is met.
+    /// Returns the primitives that the ray meets before `limit`: lanes as bits, distances, and places along
+    /// the primitives.
     fn meet<L: Lanes<Stored = f32x8>>(&self, ray: &Spread<L>, limit: f32) -> (u32, [f32x8; 2]);
 
-    /// Whether it is of what the ray leaves, and at a distance that the ray ignores.
+    /// Returns true if the primitive is of the strand that the ray leaves, at a distance that the ray ignores.
     fn skipped(&self, lane: usize, t: f32, ray: &Ray) -> bool;
 
-    /// Number of the primitive.
+    /// Returns the number of the primitive.
     fn number(&self, lane: usize) -> u32;
 
-    /// All of a hit, of which distance and place are known.
+    /// Completes a hit of which distance and place are known.
     fn hit(&self, lane: usize, ray: &Ray, t: f32, s: f32) -> Self::Hit;
 }
 
-/// The boxes of all segments. A ray that passes an end within its radius meets it, so that they are
-/// those of spheres about both ends, with some slack.
+/// Returns the boxes of all segments. A ray that passes an end within its radius meets the segment, so
+/// that the box is that of spheres about both ends, with some slack.
 pub(super) fn primitives(strands: &Strands) -> Vec<Primitive> {
     let slack = slack(&strands.bounds());
     let sphere = |k, s| {
@@ -62,7 +62,7 @@ pub(super) fn primitives(strands: &Strands) -> Vec<Primitive> {
 }
 
 impl Block {
-    /// At most eight segments.
+    /// Creates a block of at most eight segments.
     pub(super) fn new(strands: &Strands, segments: &[Primitive]) -> Self {
         let (mut start, mut edge) = ([[f32::NAN; 8]; 3], [[0.0; 8]; 3]);
         let (mut radius, mut widening) = ([0.0; 8], [0.0; 8]);
@@ -94,7 +94,7 @@ impl Block {
 impl Leaf for Block {
     type Hit = Hit;
 
-    /// Finds segments whose axis the ray passes nearer than the radius there, before `limit`: lanes as bits, distances, and places
+    /// Returns the segments whose axis the ray passes nearer than the radius there, before `limit`: lanes as bits, distances, and places
     /// along the segments.
     #[inline(always)]
     fn meet<L: Lanes<Stored = f32x8>>(&self, ray: &Spread<L>, limit: f32) -> (u32, [f32x8; 2]) {
@@ -118,7 +118,7 @@ impl Leaf for Block {
             edge[1] - edge_along * dy,
             edge[2] - edge_along * dz,
         ];
-        // The place nearest to the ray.
+        // Place on the segment that is nearest to the ray.
         let edge_sq = edge[0].mul_add(edge[0], edge[1].mul_add(edge[1], edge[2] * edge[2]));
         let start_edge = start[0].mul_add(edge[0], start[1].mul_add(edge[1], start[2] * edge[2]));
         let on_line = start_edge / edge_sq.max(L::splat(1e-30));
@@ -137,7 +137,7 @@ impl Leaf for Block {
         let mut met = distance_sq.lt(radius * radius);
         if ray.meet == Meet::Surface {
             let along_sq = edge_along.mul_add(edge_along, edge_sq);
-            // The tube without ends is entered half of its chord before the place nearest to its line: its segments agree on where.
+            // A tube without ends is entered half a chord before the place nearest to its line, on which all its segments agree.
             let inside = radius
                 .mul_sub(radius, distance_sq_at(on_line))
                 .max(L::splat(0.0));
@@ -188,7 +188,7 @@ impl Leaf for Block {
     }
 }
 
-/// Lanes of a mask as bits.
+/// Returns the lanes of a mask as bits.
 #[inline(always)]
 pub(super) fn bits<L: Lanes<Stored = f32x8>>(mask: L::Mask) -> u32 {
     L::keep(mask, L::splat(-1.0)).store().to_bitmask()

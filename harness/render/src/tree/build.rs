@@ -1,5 +1,5 @@
-//! Builds the tree from the root down: sets of primitives are divided until eight parts are left,
-//! and so on with each.
+//! Construction of the tree from the root down: a set of primitives is divided until there are eight
+//! parts, and each part is divided in turn.
 
 use super::node::{Child, Node};
 use super::split::{Extent, Primitive, middle, split};
@@ -7,22 +7,22 @@ use crate::geometry::Bounds;
 use core::ops::Range;
 use rayon::prelude::*;
 
-/// Down to this level sets are divided where it is cheapest; below, in the middle.
+/// Level down to which sets are divided where it is cheapest; below, they are divided in the middle.
 const BY_COST: usize = 14;
-/// No node is deeper: eleven levels of halves hold 2^33 segments.
+/// Level of the deepest node: eleven levels of halves hold 2^33 segments.
 pub(super) const DEEPEST: usize = BY_COST + 11;
-/// Parts with more primitives than this are built in parallel.
+/// Number of primitives above which parts are built in parallel.
 const PARALLEL: usize = 4096;
 
-/// A part of the tree before it has its place.
+/// Part of the tree before it has its place.
 enum Draft {
-    /// The primitives of a block, as a range of all in their final order.
+    /// Primitives of a block, as a range of all in their final order.
     Block(Range<usize>),
     Node(Vec<(Bounds, Self)>),
 }
 
-/// The nodes, the root first, and the blocks, which `block` makes. Both are in the order of a
-/// search that turns to the first child first.
+/// Returns the nodes, the root first, and the blocks, which `block` makes. Both are in the order of a
+/// search that visits the first child first.
 pub(super) fn build<B: Send>(
     mut primitives: Vec<Primitive>,
     block: impl Fn(&[Primitive]) -> B + Sync,
@@ -39,7 +39,7 @@ pub(super) fn build<B: Send>(
     (nodes, ranges.into_par_iter().map(block).collect())
 }
 
-/// Slack of boxes against rounding, for rays that start within a few scenes' sizes.
+/// Returns the slack of boxes against rounding, for rays that start within a few times the size of the scene.
 pub(super) fn slack(bounds: &Bounds) -> f32 {
     if bounds.is_empty() {
         0.0
@@ -48,7 +48,7 @@ pub(super) fn slack(bounds: &Bounds) -> f32 {
     }
 }
 
-/// The tree over `primitives`, whose order it changes; `first` is the place of the first of them among all.
+/// Drafts the tree over `primitives`, and changes their order. `first` is the index of the first of them among all.
 fn draft(primitives: &mut [Primitive], extent: Extent, first: usize, depth: usize) -> Draft {
     if primitives.len() <= 8 {
         return Draft::Block(first..first + primitives.len());
@@ -76,8 +76,8 @@ fn draft(primitives: &mut [Primitive], extent: Extent, first: usize, depth: usiz
     })
 }
 
-/// At most eight parts, in order. The part with the largest surface is divided first, or the one
-/// with the most primitives.
+/// Divides primitives into at most eight parts, in order. The part with the largest surface is divided
+/// first, or, without `by_cost`, the part with the most primitives.
 fn divide(
     primitives: &mut [Primitive],
     extent: Extent,
@@ -112,7 +112,7 @@ fn divide(
     parts
 }
 
-/// Writes a node and all below it, and gives its index. Blocks are listed by their primitives.
+/// Writes a node and all nodes below it, and returns its index. Blocks are listed by their primitives.
 fn place(
     children: Vec<(Bounds, Draft)>,
     nodes: &mut Vec<Node>,

@@ -1,11 +1,11 @@
-//! Eight boxes, and which of them a ray passes.
+//! Nodes of eight boxes, and the test of a ray against them.
 
 use super::block::bits;
 use super::ray::Spread;
 use crate::geometry::Bounds;
 use hairis::simd::{Broadcast, Lanes, f32x8};
 
-/// Eight boxes, lane by lane, and what is in each. Free lanes hold empty boxes, which nothing passes.
+/// Eight boxes, lane by lane, and the child in each. Free lanes hold empty boxes, which nothing passes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Node {
@@ -14,12 +14,12 @@ pub(super) struct Node {
     children: [Child; 8],
 }
 
-/// A node or a block.
+/// Link to a node or to a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Child(u32);
 
 impl Child {
-    /// The node that the search begins with.
+    /// Node with which the search begins.
     pub(super) const ROOT: Self = Self(0);
 
     pub(super) fn node(index: usize) -> Self {
@@ -48,7 +48,7 @@ impl Child {
 }
 
 impl Node {
-    /// A node of at most eight children.
+    /// Creates a node of at most eight children.
     pub(super) fn new(children: &[(Bounds, Child)]) -> Self {
         let (mut lo, mut hi) = ([[f32::INFINITY; 8]; 3], [[f32::NEG_INFINITY; 8]; 3]);
         let mut links = [Child::ROOT; 8];
@@ -65,7 +65,7 @@ impl Node {
         }
     }
 
-    /// The boxes that the ray passes before `limit`: lanes as bits, and where it enters them.
+    /// Returns the boxes that the ray passes before `limit`: lanes as bits, and the distances at which the ray enters them.
     #[inline(always)]
     pub(super) fn pass<L: Lanes<Stored = f32x8>>(
         &self,
@@ -96,5 +96,5 @@ impl Node {
     }
 }
 
-/// Far sides are moved away by this factor, so that no box is missed by rounding: 1 + 2^-20.
+/// Factor by which far sides are moved away, so that no box is missed by rounding: 1 + 2^-20.
 const ROUNDING: f32 = 1.0 + 1.0 / 1_048_576.0;

@@ -1,10 +1,10 @@
-//! Rays and hits.
+//! Rays, their hits on segments, and the hits that they ignore.
 
 use clap::ValueEnum;
 use glam::Vec3;
 use hairis::simd::Lanes;
 
-/// A ray: hits are at distances between 0 and `t_max`, both excluded.
+/// Ray whose hits are at distances between 0 and `t_max`, both excluded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// Start of the ray.
@@ -13,12 +13,12 @@ pub struct Ray {
     pub direction: Vec3,
     /// End of the ray as a distance; infinity for an unbounded ray.
     pub t_max: f32,
-    /// The strand that it leaves.
+    /// Strand that the ray leaves, whose near hits are ignored.
     pub skip: Option<Skip>,
 }
 
 impl Ray {
-    /// A ray without end that leaves no strand.
+    /// Creates a ray without end that leaves no strand.
     #[must_use]
     pub const fn new(origin: Vec3, direction: Vec3) -> Self {
         Self {
@@ -40,22 +40,22 @@ pub enum Meet {
     Surface,
 }
 
-/// Hits to ignore: a ray starts on the axis or the surface of a fibre, and would meet the very fibre that it leaves.
+/// Hits to ignore, because a ray starts on the axis or the surface of a fibre, and would meet the very fibre that it leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Skip {
-    /// Hits of this strand are ignored ...
+    /// Strand whose hits are ignored ...
     pub strand: u32,
     /// ... below this distance.
     pub before: f32,
 }
 
 impl Skip {
-    /// Ignores a strand until the ray has left it.
+    /// Creates a skip that ignores the hits of a strand until the ray has left it.
     ///
-    /// `before = 1.5 radius / max(cos_theta, 0.01)` from the axis; from the surface 2.5 radii, as a chord has up to two.
+    /// `before = 1.5 radius / max(cos_theta, 0.01)` from the axis; from the surface 2.5 radii, because a chord has up to two.
     ///
-    /// The image does not depend on the factor from 1.5 to 10; with 0, strands shadow themselves and lose 0.5 %. Whole
-    /// strands without limit would take the shadows from curls; segments alone would be met again at their joints.
+    /// The image does not depend on the factor from 1.5 to 10; with 0, strands shadow themselves and lose 0.5 %. If whole strands
+    /// were ignored without limit, curls would lose their shadows; if only segments were, rays would meet hair again at their joints.
     #[inline]
     #[must_use]
     pub fn leaving(strand: u32, radius: f32, cos_theta: f32, from: Meet) -> Self {
@@ -75,26 +75,26 @@ impl Skip {
 pub struct Hit {
     /// Distance along the ray to the place nearest to the axis, or to the surface: see [`Meet`].
     pub t: f32,
-    /// The segment.
+    /// Number of the segment.
     pub segment: u32,
-    /// Its strand.
+    /// Number of the segment's strand.
     pub strand: u32,
-    /// Place along the segment: 0 at the end of the root, 1 at that of the tip.
+    /// Place along the segment: 0 at the root's end, 1 at the tip's end.
     pub s: f32,
-    /// Offset across the fibre in radii, in `[-1, 1]`: positive on the side of the axis (root to tip) cross the ray's
-    /// direction. It is `hairis::Hit::h`.
+    /// Offset across the fibre in radii, in `[-1, 1]`, as in `hairis::Hit::h`. It is positive on the side of the axis (root to
+    /// tip) cross the ray's direction.
     pub h: f32,
 }
 
-/// A ray as lanes need it: the same in all of them.
+/// Ray whose components are the same in all lanes.
 #[derive(Clone, Copy)]
 pub(super) struct Spread<L> {
     pub(super) origin: [L; 3],
     pub(super) direction: [L; 3],
-    /// One over the direction, finite also where that is 0.
+    /// Reciprocal of the direction, finite also where the direction is 0.
     pub(super) inverse: [L; 3],
     pub(super) origin_inverse: [L; 3],
-    /// Along which axes the ray goes down, as 0 or 1.
+    /// Whether the ray goes down along each axis, as 0 or 1.
     pub(super) negative: [usize; 3],
     pub(super) meet: Meet,
 }
@@ -127,7 +127,7 @@ impl<L: Lanes> Spread<L> {
     }
 }
 
-/// `1 / x`, at most 1e18 in magnitude, so that no product with it is NaN.
+/// Returns `1 / x`, at most 1e18 in magnitude, so that no product with it is NaN.
 #[inline(always)]
 fn reciprocal(x: f32) -> f32 {
     if x.abs() < 1e-18 {

@@ -1,10 +1,10 @@
-//! Division of a set of segments: the binned surface area heuristic.
+//! Division of a set of segments by the binned surface area heuristic.
 
 use crate::geometry::Bounds;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// A segment or a triangle as the tree is built of it. Triangles are of no strand.
+/// Segment or triangle over which a tree is built. Triangles are of no strand.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Primitive {
     pub(super) bounds: Bounds,
@@ -12,11 +12,11 @@ pub(super) struct Primitive {
     pub(super) number: u32,
 }
 
-/// Bins per axis.
+/// Number of bins per axis.
 const BINS: usize = 16;
-/// Below this many segments, cost is counted in blocks: halves that fill whole blocks are cheaper.
+/// Largest number of segments for which cost is counted in blocks, because halves that fill whole blocks are cheaper.
 const COUNT_BLOCKS: usize = 64;
-/// Sets larger than this are looked at by several threads. Minima, maxima and counts are the same in any order.
+/// Number of primitives above which several threads examine a set. Minima, maxima and counts are the same in any order.
 const PARALLEL: usize = 1 << 15;
 
 /// Bounds of a set of segments, and of their centres.
@@ -32,7 +32,7 @@ impl Extent {
         centres: Bounds::EMPTY,
     };
 
-    /// Extent of `primitives`.
+    /// Returns the extent of `primitives`.
     pub(super) fn of(primitives: &[Primitive]) -> Self {
         if primitives.len() > PARALLEL {
             let chunks = primitives.par_chunks(PARALLEL / 4);
@@ -115,7 +115,7 @@ impl Bins {
         }))
     }
 
-    /// The cheapest place: axis, and the first bin of the upper half. None if all centres are in one bin.
+    /// Returns the cheapest place to divide: the axis, and the first bin of the upper half. `None` if all centres are in one bin.
     fn cheapest(&self, in_blocks: bool) -> Option<(usize, usize)> {
         let mut best = None;
         let mut least = f32::INFINITY;
@@ -139,7 +139,7 @@ impl Bins {
     }
 }
 
-/// From centres to bins.
+/// Map from centres to bins.
 struct Scale {
     lo: Vec3,
     /// Bins per centimetre; 0 along axes without extent.
@@ -174,7 +174,7 @@ impl Scale {
     }
 }
 
-/// Orders `primitives`, more than eight, in two parts, and gives the length of the first, which is neither 0 nor all.
+/// Orders `primitives`, more than eight, in two parts, and returns the length of the first, which is neither 0 nor all.
 pub(super) fn split(primitives: &mut [Primitive], extent: &Extent) -> usize {
     let scale = Scale::of(extent);
     let bins = Bins::of(primitives, &scale);
@@ -184,12 +184,12 @@ pub(super) fn split(primitives: &mut [Primitive], extent: &Extent) -> usize {
     }
 }
 
-/// The middle of more than eight segments, such that the first half fills its blocks.
+/// Returns the middle of more than eight segments, such that the first half fills its blocks.
 pub(super) fn middle(segments: usize) -> usize {
     (segments / 2).next_multiple_of(8)
 }
 
-/// Puts those that are lower first, and gives their number.
+/// Moves the primitives that are lower to the front, and returns their number.
 fn partition(primitives: &mut [Primitive], lower: impl Fn(&Primitive) -> bool) -> usize {
     let (mut i, mut end) = (0, primitives.len());
     while i < end {

@@ -1,4 +1,4 @@
-//! The tree against every block one by one, on every level.
+//! Comparison of the tree with a test of every block one by one, on every level.
 
 use super::block::{Block, Leaf as _};
 use super::ray::Spread;
@@ -9,7 +9,7 @@ use hairis::simd::{Kernel, Lanes, Level, f32x8};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
-/// One block, alone.
+/// Kernel that tests a ray against one block alone.
 struct Alone<'a>(&'a Block, &'a Ray, Meet);
 
 impl Kernel for Alone<'_> {
@@ -22,7 +22,7 @@ impl Kernel for Alone<'_> {
     }
 }
 
-/// The nearest hit, by looking at all segments.
+/// Returns the nearest hit, found by a test of all segments.
 fn search_all(tree: &Tree, ray: &Ray) -> Option<Hit> {
     let mut best: Option<Hit> = None;
     for block in &tree.0.blocks {
@@ -53,7 +53,7 @@ impl Numbers {
         (self.0.next_u32() >> 8) as f32 / (1 << 24) as f32
     }
 
-    /// In a cube of side 2 about the origin.
+    /// Returns a point in a cube of side 2 about the origin.
     fn vector(&mut self) -> Vec3 {
         2.0 * Vec3::new(self.number(), self.number(), self.number()) - 1.0
     }
@@ -72,7 +72,7 @@ impl Numbers {
     }
 }
 
-/// 2000 segments in strands of 1 to 20, in a cube of side 20, thick enough to be met often.
+/// Returns 2000 segments in strands of 1 to 20, in a cube of side 20, thick enough to be met often.
 fn thicket() -> Strands {
     let mut numbers = Numbers::new(1);
     let mut builder = Strands::builder();
@@ -91,7 +91,7 @@ fn thicket() -> Strands {
     builder.finish()
 }
 
-/// Rays from outside and inside, towards segments, along them, along the axes of the world, from their axes, of any length.
+/// Returns a ray from outside or inside, towards a segment, along it, along an axis of the world, or from an axis, of any length.
 fn ray(strands: &Strands, segments: &[(u32, u32)], numbers: &mut Numbers) -> Ray {
     let (strand, segment) = segments[numbers.index(segments.len())];
     let s = numbers.number();

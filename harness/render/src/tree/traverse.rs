@@ -1,4 +1,4 @@
-//! The search through the tree: near boxes first.
+//! Search through the tree, which visits near boxes first.
 
 use super::Boxes;
 use super::block::Leaf;
@@ -7,16 +7,16 @@ use super::node::Child;
 use super::ray::{Ray, Spread};
 use hairis::simd::{Kernel, Lanes, f32x8};
 
-/// Numbers of nodes and blocks.
+/// Numbers of nodes and blocks, of a tree or of those that a search visits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Visits {
-    /// Nodes: eight boxes each.
+    /// Number of nodes, of eight boxes each.
     pub nodes: u64,
-    /// Blocks: eight segments each, or triangles.
+    /// Number of blocks, of eight segments or triangles each.
     pub blocks: u64,
 }
 
-/// Counts what a search looks at, or does not.
+/// Counter of the nodes and blocks that a search visits, or of nothing.
 pub(super) trait Count {
     fn node(&mut self);
     fn block(&mut self);
@@ -40,14 +40,14 @@ impl Count for Visits {
     }
 }
 
-/// The nearest hit of a ray.
+/// Search for the nearest hit of a ray.
 pub(super) struct Closest<'a, B, C> {
     pub(super) boxes: &'a Boxes<B>,
     pub(super) ray: &'a Ray,
     pub(super) visits: &'a mut C,
 }
 
-/// Whether a ray meets anything.
+/// Search for any hit of a ray.
 pub(super) struct Any<'a, B, C> {
     pub(super) boxes: &'a Boxes<B>,
     pub(super) ray: &'a Ray,
@@ -82,10 +82,10 @@ struct Best {
     number: u32,
 }
 
-/// Seven siblings wait at each level, and the root.
+/// Largest number of children that wait: seven siblings at each level, and the root.
 const STACK: usize = 7 * DEEPEST + 1;
 
-/// The nearest hit, or with `ANY` the first that is found, of which only that it is there is known.
+/// Returns the nearest hit, or with `ANY` the first that is found, which only shows that there is one.
 #[inline(always)]
 fn search<L: Lanes<Stored = f32x8>, B: Leaf, C: Count, const ANY: bool>(
     tree: &Boxes<B>,
@@ -93,7 +93,7 @@ fn search<L: Lanes<Stored = f32x8>, B: Leaf, C: Count, const ANY: bool>(
     visits: &mut C,
 ) -> Option<B::Hit> {
     let spread = Spread::<L>::new(ray, tree.meet);
-    // No segment has a number below 0: what is at `t_max` itself is not met.
+    // No segment has a number below 0, so that a hit at `t_max` itself does not count.
     let mut best = Best {
         t: ray.t_max,
         s: 0.0,
@@ -143,8 +143,8 @@ fn search<L: Lanes<Stored = f32x8>, B: Leaf, C: Count, const ANY: bool>(
                 let lane = passed.trailing_zeros() as usize;
                 passed &= passed - 1;
                 let near = near.as_array()[lane];
-                // Inserted so that the nearest is on top: for rays from hits that only ask whether there is anything, too, a
-                // fifth more a second.
+                // Insert the child so that the nearest is on top. Rays from hits that only test whether there is anything gain from that,
+                // too: there are a fifth more of them per second.
                 let mut place = waiting;
                 while place > first && stack[place - 1].1 < near {
                     stack[place] = stack[place - 1];

@@ -1,4 +1,4 @@
-//! Eight triangles, and which of them a ray meets.
+//! Blocks of eight triangles, and the test of a ray against them.
 
 use super::Boxes;
 use super::block::{Leaf, bits};
@@ -8,12 +8,12 @@ use super::split::Primitive;
 use crate::geometry::{Bounds, Mesh};
 use hairis::simd::{Lanes, f32x8, lanes3};
 
-/// Finds the triangles that rays meet, from either side.
+/// Tree of boxes over the triangles of a mesh, which finds the triangles that rays meet from either side.
 #[derive(Clone, Debug)]
 pub struct MeshTree(Boxes<Triangles>);
 
 impl MeshTree {
-    /// Builds the tree. It is the same for any number of threads.
+    /// Builds the tree over all triangles. The tree is the same for any number of threads.
     #[must_use]
     pub fn build(mesh: &Mesh) -> Self {
         let slack = slack(&mesh.bounds());
@@ -35,15 +35,15 @@ impl MeshTree {
         })))
     }
 
-    /// The nearest triangle that the ray meets: its distance and number. Of equally near ones it is
-    /// that of the lowest number.
+    /// Returns the distance and the number of the nearest triangle that the ray meets. Among equally near
+    /// triangles, the one with the lowest number is returned.
     #[inline]
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<(f32, u32)> {
         self.0.closest(ray)
     }
 
-    /// Whether the ray meets any triangle.
+    /// Returns true if the ray meets any triangle.
     #[inline]
     #[must_use]
     pub fn occluded(&self, ray: &Ray) -> bool {
@@ -78,7 +78,7 @@ impl Triangles {
     }
 }
 
-/// `a x b`: exactly the opposite of `b x a`, as nothing is fused.
+/// Returns `a x b`, which is exactly the opposite of `b x a`, because nothing is fused.
 #[inline(always)]
 fn cross<L: Lanes>(a: [L; 3], b: [L; 3]) -> [L; 3] {
     [
@@ -96,7 +96,7 @@ fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
 impl Leaf for Triangles {
     type Hit = (f32, u32);
 
-    /// On which side of the three edges the ray passes. Two triangles find exactly opposite numbers
+    /// Finds on which side of the three edges the ray passes. Two triangles find exactly opposite numbers
     /// at an edge that they share, so that no ray slips between them.
     #[inline(always)]
     fn meet<L: Lanes<Stored = f32x8>>(&self, ray: &Spread<L>, limit: f32) -> (u32, [f32x8; 2]) {
@@ -109,8 +109,8 @@ impl Leaf for Triangles {
             from(&self.corners[1]),
             from(&self.corners[2]),
         ];
-        // Their parts across the ray are as short as the triangle: products of the whole vectors
-        // would have rounding errors larger than a small triangle far away.
+        // The parts across the ray are as short as the triangle: products of the whole vectors would have
+        // rounding errors larger than a small triangle far away.
         let across = |v: [L; 3]| {
             let along = dot(ray.direction, v);
             [
@@ -127,7 +127,7 @@ impl Leaf for Triangles {
         ];
         let least = sides[0].min(sides[1]).min(sides[2]);
         let most = sides[0].max(sides[1]).max(sides[2]);
-        // From the corners themselves: those seen from the ray's origin have lost digits of small triangles.
+        // Use the corners themselves, because corners relative to the ray's origin have lost digits of small triangles.
         let edge = |to: &[f32x8; 3]| -> [L; 3] {
             let (to, from): ([L; 3], [L; 3]) = (lanes3(to), lanes3(&self.corners[0]));
             [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
@@ -187,7 +187,7 @@ mod tests {
         Mesh::new(places.collect(), triangles.collect()).expect("a ball")
     }
 
-    /// The distance in `f64`, and how far inside its edges the triangle is met, as parts of its
+    /// Returns the distance in `f64`, and how far inside its edges the triangle is met, as parts of its
     /// heights.
     fn meet(corners: [Vec3; 3], ray: &Ray) -> (f64, f64) {
         let [a, b, c] = corners.map(|p| p.as_dvec3());

@@ -1,4 +1,4 @@
-//! `hairis-render fit`: files, and what it refuses.
+//! Tests of `hairis-render fit`: the files that it writes, and the input that it rejects.
 
 use super::{refuse, run, succeed};
 use exr::prelude::{
@@ -140,7 +140,7 @@ fn with_window(folder: &TempDir, name: &str, attribute: &str, window: [i32; 4]) 
     fs::write(folder.path().join(name), bytes).expect("written");
 }
 
-/// A picture is as large as its windows are, whatever attributes say that a program has kept which made it smaller.
+/// Checks that a picture is as large as its windows, whatever attributes a program has kept that made it smaller.
 #[test]
 fn windows_say_how_large_a_target_is() {
     let folder = TempDir::new().expect("a folder");

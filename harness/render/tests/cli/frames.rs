@@ -6,7 +6,7 @@ use exr::prelude::{IntegerBounds, read_all_flat_layers_from_file};
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Display window and data window of a file.
+/// Returns the display window and the data window of a file.
 fn windows(folder: &TempDir, file: impl AsRef<Path>) -> [IntegerBounds; 2] {
     let file = read_all_flat_layers_from_file(folder.path().join(file)).expect("a picture");
     let layer = &file.layer_data[0];

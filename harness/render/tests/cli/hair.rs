@@ -1,4 +1,4 @@
-//! Hair of one's own: materials of files, and parameters on top of presets.
+//! Hair of the caller's own: materials of files, and parameters on top of presets.
 
 use super::{SMALL, channels, refuse, render, run};
 use hairis_render::part::Part;
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 const CHIANG: &str =
     r#"{"model": "chiang", "params": {"beta_m": 0.3, "beta_n": 0.3, "sigma_a": [0.25, 0.5, 1.0]}}"#;
 
-/// A folder with two files of the same name, a file of two materials, and one as editors of Windows
+/// Makes a folder with two files of the same name, a file of two materials, and one as editors of Windows
 /// write it.
 fn folder() -> TempDir {
     let folder = TempDir::new().expect("a folder");
@@ -44,7 +44,7 @@ fn folder() -> TempDir {
     folder
 }
 
-/// The line that says everything which the sums of a picture depend on.
+/// Returns the line of everything that the sums of a picture depend on.
 fn line(folder: &TempDir, part: &str) -> String {
     let bytes = fs::read(folder.path().join(part)).expect("a part");
     let text = String::from_utf8_lossy(&bytes);

@@ -6,7 +6,7 @@ use super::{refuse, run};
 use std::fs;
 use tempfile::TempDir;
 
-/// Hair that stands on the upper half of a ball of 10 cm about (0, 5, 0): Mitsuba's text.
+/// Writes hair that stands on the upper half of a ball of 10 cm about (0, 5, 0), as Mitsuba's text.
 fn dome(folder: &TempDir) {
     let mut text = String::new();
     for k in 0..60_u8 {
@@ -128,7 +128,7 @@ fn heads_are_refused_in_one_line() {
     }
 }
 
-/// A pipe is read once: another hair or head behind the same name is another picture.
+/// Checks that a pipe is read once, and that another hair or head behind the same name is another picture.
 #[cfg(unix)]
 #[test]
 fn files_from_a_pipe_are_told_apart() {

@@ -1,4 +1,4 @@
-//! Paths that the system allows, whatever they are made of.
+//! Paths of any bytes that the system allows.
 #![cfg(unix)]
 
 use super::{SMALL, run};
@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;
 
-/// The attribute `command` of a picture.
+/// Returns the attribute `command` of a picture.
 fn command(path: &Path) -> String {
     let file = read_all_flat_layers_from_file(path).expect("a picture");
     let attributes = &file.layer_data[0].attributes.other;
@@ -21,7 +21,7 @@ fn command(path: &Path) -> String {
     }
 }
 
-/// A file of hair in the format of cyHair: one strand of one segment.
+/// Returns a file of hair in the format of cyHair: one strand of one segment.
 fn hair() -> Vec<u8> {
     let mut bytes = b"HAIR".to_vec();
     for number in [1_u32, 2, 2, 1] {
@@ -37,7 +37,7 @@ fn hair() -> Vec<u8> {
     bytes
 }
 
-/// A sky of one colour.
+/// Map of a sky of one colour.
 const SKY: &[u8] = b"#?RGBE\n\n-Y 1 +X 2\n\x80\x80\x80\x81\x80\x80\x80\x81";
 
 #[test]

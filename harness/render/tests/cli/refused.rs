@@ -1,10 +1,10 @@
-//! Bad input: exit code 2, and one line that names it, before anything is rendered.
+//! Bad input, which ends with exit code 2 and one line that names it, before anything is rendered.
 
 use super::{refuse, run};
 use std::fs;
 use tempfile::TempDir;
 
-/// Flags that clap refuses: it names the flag, the value and what may stand there.
+/// Checks that clap rejects flags with the flag, the value and the values that are allowed.
 #[test]
 fn bad_flags_are_refused() {
     let folder = TempDir::new().expect("a folder");

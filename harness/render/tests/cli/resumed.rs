@@ -5,7 +5,7 @@ use super::{SMALL, channels, refuse, render, succeed};
 use hairis_render::part::Part;
 use tempfile::TempDir;
 
-/// A shard's part stays, and may be continued by the same run alone.
+/// Checks that a shard's part stays, and that only the same run may continue it.
 #[test]
 fn parts_of_other_runs_are_refused_by_name() {
     let folder = TempDir::new().expect("a folder");
@@ -34,7 +34,7 @@ fn parts_of_other_runs_are_refused_by_name() {
     }
 }
 
-/// Passes end by the clock, for shading points as for paths.
+/// Checks that passes end by the clock, for shading points as for paths.
 #[test]
 fn time_ends_every_estimate() {
     let folder = TempDir::new().expect("a folder");
@@ -73,7 +73,7 @@ fn time_ends_every_estimate() {
     );
 }
 
-/// A picture has the same bits in every channel however it came to be.
+/// Checks that a picture has the same bits in every channel, however it came to be.
 #[test]
 fn more_samples_and_shards_make_the_picture_of_one_run() {
     let scenes: [&[&str]; 3] = [
@@ -121,7 +121,7 @@ fn more_samples_and_shards_make_the_picture_of_one_run() {
     }
 }
 
-/// A finished picture does not stand in the way of another one with the same name.
+/// Checks that a finished picture does not stand in the way of another one with the same name.
 #[test]
 fn finished_pictures_are_replaced() {
     let folder = TempDir::new().expect("a folder");
@@ -140,7 +140,7 @@ fn finished_pictures_are_replaced() {
     assert!(reused == channels(&folder, "b.exr"));
 }
 
-/// A run that was killed goes on, and its picture is that of one that was not. What it had written is whole.
+/// Checks that a run that was killed continues to the picture of a run that was not, and that its files were whole.
 #[cfg(unix)]
 #[test]
 fn killed_runs_go_on() {
@@ -201,7 +201,7 @@ fn killed_runs_go_on() {
     }
 }
 
-/// A count of threads that is none is reported, and the run goes on.
+/// Checks that an invalid count of threads is reported, and that the run continues.
 #[test]
 fn odd_counts_of_threads_are_reported() {
     let folder = TempDir::new().expect("a folder");

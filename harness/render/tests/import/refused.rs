@@ -1,4 +1,4 @@
-//! Each refusal, in one line with the byte and both numbers.
+//! Rejections of files, each in one line with the byte and both numbers.
 
 use super::{STRAIGHT, hair, read, tfx, with, with_f32, with_u32};
 use hairis_render::formats::{Import, import};

@@ -1,4 +1,4 @@
-//! Strands of research, and what tells formats apart.
+//! Formats of research, and the content by which formats are told apart.
 
 use super::{STRAIGHT, hair, read, tfx};
 use glam::Vec3;
@@ -8,7 +8,7 @@ use std::path::Path;
 
 type Lines = Vec<Vec<[f32; 3]>>;
 
-/// Three strands of 3, 2 and 4 nodes.
+/// Returns three strands of 3, 2 and 4 nodes.
 fn lines() -> Lines {
     let strand = |x: f32, nodes: u8| (0..nodes).map(|k| [x, 2.0 * f32::from(k), x * x]).collect();
     vec![strand(0.0, 3), strand(1.5, 2), strand(3.0, 4)]
@@ -22,7 +22,7 @@ fn number(value: usize) -> [u8; 4] {
     u32::try_from(value).expect("small").to_le_bytes()
 }
 
-/// USC-HairSalon, or with `beside` numbers after each place `CT2Hair`.
+/// Returns a file of USC-HairSalon, or, with `beside` numbers after each position, of `CT2Hair`.
 fn counted(lines: &Lines, beside: &[f32]) -> Vec<u8> {
     let mut file = number(lines.len()).to_vec();
     for line in lines {
@@ -60,7 +60,7 @@ fn text(lines: &Lines, radius: &str, between: &str) -> Vec<u8> {
     lines.iter().map(strand).collect::<String>().into_bytes()
 }
 
-/// PLY in three encodings: a header without its `format`, and rows.
+/// Returns a PLY file in three encodings, from a header without its `format` and from rows.
 fn ply(header: &str, rows: &[&[(char, f64)]]) -> [Vec<u8>; 3] {
     let start =
         |format: &str| format!("ply\nformat {format} 1.0\n{header}end_header\n").into_bytes();
@@ -92,7 +92,7 @@ fn ply(header: &str, rows: &[&[(char, f64)]]) -> [Vec<u8>; 3] {
     files
 }
 
-/// Nodes of all strands as rows of floats and doubles, each with `more`.
+/// Returns the nodes of all strands as rows of floats and doubles, each with `more`.
 fn nodes(lines: &Lines, more: &[(char, f64)]) -> Vec<Vec<(char, f64)>> {
     let row = |place: [f32; 3]| {
         let [x, y, z] = place.map(f64::from);

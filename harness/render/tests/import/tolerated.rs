@@ -1,4 +1,4 @@
-//! Peculiarities of files in use that are read with a remark.
+//! Peculiarities of files in use, which are read with a remark.
 
 use super::{STRAIGHT, hair, read, remarks, tfx, with_f32, with_u32};
 use glam::Vec3;
@@ -6,7 +6,7 @@ use hairis_render::formats::{Curve, Import};
 use hairis_render::geometry::Strands;
 use hairis_render::tree::Tree;
 
-/// A cyHair file of strands along y, side by side, each of equal spans, with a thickness per
+/// Returns a cyHair file of strands along y, side by side, each of equal spans, with a thickness per
 /// strand.
 fn upright(thicknesses: &[f32], length: f32) -> Vec<u8> {
     let count = u32::try_from(thicknesses.len()).expect("a few");
@@ -36,7 +36,7 @@ fn y(strands: &Strands) -> Vec<f32> {
     nodes.map(|node| strands.node_position(node).y).collect()
 }
 
-/// One straight strand with nodes at y = 0, 4, 4.01, 8, 8.02, 8.03, 12.
+/// Checks one straight strand with nodes at y = 0, 4, 4.01, 8, 8.02, 8.03, 12.
 #[test]
 fn a_straight_strand_of_uneven_spans_has_no_loop() {
     let mut file = with_u32(with_u32(upright(&[0.02], 1.0), 8, 7), 16, 6);

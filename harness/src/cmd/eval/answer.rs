@@ -1,4 +1,4 @@
-//! The answers, computed along the chosen path.
+//! Answers of `hairis eval`, computed along the chosen code path.
 
 use super::request::{Exact, Query, Request};
 use crate::args::CodePath;
@@ -16,10 +16,10 @@ use serde_json::json;
 use std::collections::BTreeMap;
 use wide::f32x8;
 
-/// The answer to a request. `pdf_lobe` has one number per lobe of the model.
+/// Answer to a request. `pdf_lobe` has one number per lobe of the model.
 #[derive(Debug, Serialize)]
 struct Answer<T> {
-    /// The direction of a sample.
+    /// Direction of a sample.
     #[serde(skip_serializing_if = "Option::is_none")]
     wi: Option<[T; 3]>,
     s: [T; 3],
@@ -32,14 +32,14 @@ struct Answer<T> {
     colors: BTreeMap<&'static str, Vec<[T; 3]>>,
 }
 
-/// The rest of the answer to uniform numbers. A discarded sample has no lobe, and 0 everywhere else.
+/// Further fields of the answer to uniform numbers. A discarded sample has no lobe, and 0 in every other field.
 #[derive(Debug, Serialize)]
 struct Choice<T> {
     lobe: Option<&'static str>,
     weight: [T; 3],
 }
 
-/// Number of lines that a path takes at once.
+/// Returns the number of lines that a path takes at once.
 pub(super) const fn block_len(path: CodePath) -> usize {
     match path {
         CodePath::Scalar | CodePath::F64 => 1,
@@ -48,7 +48,7 @@ pub(super) const fn block_len(path: CodePath) -> usize {
     }
 }
 
-/// The answers to a block of lines, in order. Numbers have as few digits as reading them back in the same precision allows.
+/// Answers a block of lines, in order. Numbers have the fewest digits that read back as the same number in the same precision.
 pub(super) fn answers(
     path: CodePath,
     block: &[Result<Request, String>],
@@ -63,7 +63,7 @@ pub(super) fn answers(
             Ok(_) => {}
         }
     }
-    // The requests of each model together; the answers then go back to their places.
+    // Requests of one model are answered together; the answers then go back to their places.
     for model in ModelId::ALL.iter().filter(|_| path != CodePath::F64) {
         let requests = block
             .iter()
@@ -88,7 +88,7 @@ pub(super) fn answers(
     Ok(lines)
 }
 
-/// One direction per call.
+/// Answers a request with one direction per call.
 fn scalar(request: &Request) -> Answer<f32> {
     let bsdf = bsdf(request);
     let (found, wi) = match request.query {
@@ -104,7 +104,7 @@ fn scalar(request: &Request) -> Answer<f32> {
     })
 }
 
-/// Up to eight lines in a call, all of one model: every lane has its own material, shading point and query. Spare lanes repeat
+/// Answers up to eight lines in one call, all of one model: every lane has its own material, shading point and query. Spare lanes repeat
 /// the last line.
 fn eight(group: &[&Request]) -> Vec<Answer<f32>> {
     let lane = |i: usize| group[i.min(group.len() - 1)];
@@ -115,7 +115,7 @@ fn eight(group: &[&Request]) -> Vec<Answer<f32>> {
         wo,
         h: f32x8::new(from_fn(|i| lane(i).h)),
     });
-    // A lane whose line has no xi samples as well; its sample is ignored.
+    // A lane whose line has no xi samples as well, but its sample is ignored.
     let xi: [[f32; 3]; 8] = from_fn(|i| match lane(i).query {
         Query::Wi(_) => [0.5; 3],
         Query::Xi(xi) => xi,
@@ -142,7 +142,7 @@ fn eight(group: &[&Request]) -> Vec<Answer<f32>> {
     group.iter().enumerate().map(of_lane).collect()
 }
 
-/// Slices: one call for all directions, and one for all samples, of lines that share a shading point.
+/// Answers lines that share a shading point with slices: one call for all directions, and one for all samples.
 fn batch(run: &[&Request]) -> Vec<Answer<f32>> {
     let bsdf = bsdf(run[0]);
     let (mut wi, mut xi) = (Vec::new(), Vec::new());
@@ -171,17 +171,17 @@ fn batch(run: &[&Request]) -> Vec<Answer<f32>> {
 
 const ONE_LENGTH: &str = "slices of one length";
 
-/// Three numbers of each item, by column.
+/// Returns three numbers of each item, as columns.
 fn columns<V: Index<usize, Output = f32>>(of: &[V]) -> [Vec<f32>; 3] {
     from_fn(|row| of.iter().map(|item| item[row]).collect())
 }
 
-/// The three numbers at a place of columns.
+/// Returns the three numbers of columns at index `i`.
 fn at(columns: &[Vec<f32>; 3], i: usize) -> [f32; 3] {
     columns.each_ref().map(|column| column[i])
 }
 
-/// Values and densities.
+/// Evaluates value and density at each direction.
 fn batch_values(bsdf: &AnyBsdf, wi: &[Vec3]) -> Vec<Found<f32>> {
     let (mut value, mut pdf) = (columns(wi), vec![0.0; wi.len()]);
     let out = EvalColumns {
@@ -195,7 +195,7 @@ fn batch_values(bsdf: &AnyBsdf, wi: &[Vec3]) -> Vec<Found<f32>> {
         .collect()
 }
 
-/// Samples, each after its direction.
+/// Draws the samples, and returns each with its direction.
 fn batch_samples(bsdf: &AnyBsdf, xi: &[[f32; 3]]) -> Vec<(Vec3, Found<f32>)> {
     let mut vectors: [[Vec<f32>; 3]; 3] = from_fn(|_| columns(xi));
     let (mut pdf, mut slot) = (vec![0.0; xi.len()], vec![0.0; xi.len()]);
@@ -229,7 +229,7 @@ fn batch_samples(bsdf: &AnyBsdf, xi: &[[f32; 3]]) -> Vec<(Vec3, Found<f32>)> {
     (0..xi.len()).map(sample).collect()
 }
 
-/// Densities of the lobes: they have no slice call, so eight directions per call.
+/// Evaluates the densities of the lobes. They have no slice call, so this takes eight directions per call.
 fn batch_densities(bsdf: &AnyBsdf, wi: &[Vec3]) -> Vec<[f32; 4]> {
     let eight = |wi: &[Vec3]| {
         let lobes = bsdf.lobes8(&Vec3x8::from(from_fn(|i| wi[i.min(wi.len() - 1)])));
@@ -240,7 +240,7 @@ fn batch_densities(bsdf: &AnyBsdf, wi: &[Vec3]) -> Vec<[f32; 4]> {
     wi.chunks(8).flat_map(eight).collect()
 }
 
-/// The formulas in double precision, for the numbers of the line as they are.
+/// Answers a request from the formulas in double precision, for the numbers of the line as they are.
 fn formulas(request: &Request) -> Answer<f64> {
     let MaterialSpec {
         model,
@@ -277,7 +277,7 @@ fn bsdf(request: &Request) -> AnyBsdf {
     })
 }
 
-/// Result of a query: a value and its density, or a sample.
+/// Result of a query: a value with its density, or a sample.
 enum Found<T> {
     Value([T; 3], T),
     Sample(ReferenceSample<T>),
@@ -287,7 +287,7 @@ const fn valued(eval: Eval) -> Found<f32> {
     Found::Value(eval.value, eval.pdf)
 }
 
-/// A sample of the kernels, or the zeros of a discarded one.
+/// Converts a sample of the kernels; a discarded one becomes zeros.
 fn drawn(sample: Option<Sample>) -> Found<f32> {
     let none = ReferenceSample {
         wi: [0.0; 3],
@@ -314,7 +314,7 @@ fn drawn(sample: Option<Sample>) -> Found<f32> {
     ))
 }
 
-/// The answer, with the densities of the model's own lobes, and their colours if it reports them.
+/// Assembles the answer, with the densities of the model's own lobes, and their colours if the model reports them.
 fn answer<T: Copy + Default>(
     model: ModelId,
     found: Found<T>,

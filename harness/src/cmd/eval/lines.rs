@@ -1,15 +1,15 @@
-//! The lines of a stream, with a bound on their length.
+//! Lines of a stream, with a bound on their length.
 
 use hairis_materials::json::refusal;
 use std::io::{self, BufRead, BufReader, Read};
 
-/// Longest line taken, in bytes: a thousand times what a request needs.
+/// Longest line that is accepted, in bytes: a thousand times what a request needs.
 const LONGEST: usize = 1 << 20;
 
-/// The byte-order mark in UTF-8.
+/// Byte-order mark in UTF-8.
 const MARK: &[u8] = "\u{feff}".as_bytes();
 
-/// Lines one by one, in one buffer.
+/// Reader of a stream, line by line, in one buffer.
 pub(super) struct Lines<R> {
     input: BufReader<R>,
     line: Vec<u8>,
@@ -23,15 +23,16 @@ impl<R: Read> Lines<R> {
         }
     }
 
-    /// Whether a whole line can be had without waiting for one.
+    /// Returns true if a whole line can be read without waiting for the input.
     pub(super) fn ready(&self) -> bool {
         self.input.buffer().contains(&b'\n')
     }
 
-    /// The next line without its end, or its refusal; `None` at the end of the input. A last line needs no end.
+    /// Reads the next line without its line break, or the reason for rejecting it; `None` at the end of the input. The last line needs no
+    /// line break.
     pub(super) fn next(&mut self) -> io::Result<Option<Result<&str, String>>> {
         self.line.clear();
-        // One byte more than the longest line, for its end.
+        // One byte more than the longest line, for its line break.
         let read = self
             .input
             .by_ref()
@@ -49,8 +50,8 @@ impl<R: Read> Lines<R> {
                 format!("longer than {LONGEST} bytes"),
             ))));
         }
-        // Files that editors and shells of Windows write begin with a mark, and several of them may
-        // have been joined.
+        // Files written by editors and shells of Windows begin with a mark. A line in the middle may have one too, where several files have
+        // been joined.
         let line = self.line.strip_prefix(MARK).unwrap_or(&self.line);
         let text = core::str::from_utf8(line).map_err(|error| {
             refusal(

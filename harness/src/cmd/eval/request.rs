@@ -1,10 +1,10 @@
-//! One line of the input, checked.
+//! Requests of `hairis eval`: parses and checks one line of the input.
 
 use glam::Vec3;
 use hairis_materials::json::{Json, number, numbers, refusal};
 use hairis_materials::material::{MaterialSpec, single};
 
-/// Tolerance of the length of a direction; it is normalised then.
+/// Tolerance of the length of a direction, which is then normalised.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 /// Tolerance of the length of a unit vector in single precision. Such a vector is not normalised, so that all paths answer
 /// for the same direction.
@@ -13,26 +13,25 @@ const ROUNDED: f64 = 2e-7;
 /// Query about a shading point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Query {
-    /// The value and the densities at a unit direction.
+    /// Unit direction at which value and densities are wanted.
     Wi(Vec3),
-    /// The sample of three numbers in `[0, 1)`: for the lobe, the inclination and the azimuth.
+    /// Three uniform numbers in `[0, 1)` to sample with: for the lobe, the inclination and the azimuth.
     Xi([f32; 3]),
 }
 
-/// A line of the input, rounded to single precision for the kernels, and as it is for the formulas.
+/// Line of the input, rounded to single precision for the kernels, and as it is for the formulas.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Request {
     pub(super) spec: MaterialSpec,
-    /// Unit.
+    /// Unit direction of the viewer.
     pub(super) wo: Vec3,
-    /// Offset across the fibre; 0 for a model of the far field.
+    /// Offset across the fibre, 0 for a far-field model.
     pub(super) h: f32,
     pub(super) query: Query,
     pub(super) exact: Exact,
 }
 
-/// The numbers of a line in double precision, but for the material's; the query is the `wi` or `xi`
-/// of [`Query`].
+/// Numbers of a line in double precision, except for those of the material. The query is the `wi` or `xi` of [`Query`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Exact {
     pub(super) wo: [f64; 3],
@@ -41,7 +40,7 @@ pub(super) struct Exact {
 }
 
 impl Request {
-    /// Reads a line.
+    /// Parses a line.
     pub(super) fn parse(line: &str) -> Result<Self, String> {
         let line = Json::parse(line)?;
         let first = MaterialSpec::first_of_name(&line);
@@ -80,7 +79,7 @@ impl Request {
     }
 }
 
-/// The offset across the fibre.
+/// Parses the offset across the fibre.
 fn offset(json: &Json) -> Result<f64, String> {
     let h = number("h", json)?;
     if (-1.0..=1.0).contains(&h) {
@@ -90,7 +89,7 @@ fn offset(json: &Json) -> Result<f64, String> {
     }
 }
 
-/// The direction at `path`, normalised.
+/// Parses the direction at `path`, and normalises it.
 fn direction(path: &str, json: &Json) -> Result<[f64; 3], String> {
     let numbers = numbers(path, json, 3)?;
     let length = numbers[0].hypot(numbers[1]).hypot(numbers[2]);
@@ -108,7 +107,7 @@ fn direction(path: &str, json: &Json) -> Result<[f64; 3], String> {
     Ok([0, 1, 2].map(|row| numbers[row] / divisor))
 }
 
-/// The three numbers in `[0, 1)` at `path`.
+/// Parses the three numbers in `[0, 1)` at `path`.
 fn uniform(path: &str, json: &Json) -> Result<[f64; 3], String> {
     let xi = numbers(path, json, 3)?;
     match xi.iter().position(|x| !(0.0..1.0).contains(x)) {
@@ -120,12 +119,12 @@ fn uniform(path: &str, json: &Json) -> Result<[f64; 3], String> {
     }
 }
 
-/// A direction in single precision.
+/// Rounds a direction to single precision.
 fn single3([u, v, w]: [f64; 3]) -> Vec3 {
     Vec3::new(single(u), single(v), single(w))
 }
 
-/// Uniform numbers in single precision, below 1 still.
+/// Rounds uniform numbers to single precision, keeping them below 1.
 fn single_xi(xi: [f64; 3]) -> [f32; 3] {
     const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
     xi.map(|x| single(x).min(LARGEST))

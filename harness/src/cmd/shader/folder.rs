@@ -1,4 +1,4 @@
-//! `hairis shader --out`: a folder of models in every language, with an index and examples.
+//! `hairis shader --out`: writes a folder of models in every language, with an index and examples.
 
 use super::{Source, model};
 use crate::args::{Shader, ShaderTarget};
@@ -15,14 +15,14 @@ use std::fs;
 use std::io::{ErrorKind, Write as _};
 use std::path::Path;
 
-/// README before the table of files. Its title, with any version, tells a folder of this command from others.
+/// README before the table of files. Its title, of any version, distinguishes a folder of this command from others.
 const HEAD: &str = include_str!("folder/head.md");
-/// README after the table, where there are examples.
+/// README after the table, if there are examples.
 const EXAMPLES: &str = include_str!("folder/examples.md");
 /// End of the README.
 const TAIL: &str = include_str!("folder/tail.md");
 
-/// Program of a language that shades one hair: its file, and how the README says to run it.
+/// Program in one language that shades one hair: its file, and how the README says to run it.
 struct Example {
     target: ShaderTarget,
     file: &'static str,
@@ -45,11 +45,12 @@ const ALL_EXAMPLES: [Example; 2] = [
     },
 ];
 
-/// Writes a file per model and language, `README.md`, and examples unless the flags name some functions alone.
+/// Writes a file per model and language, `README.md`, and examples unless the flags select some functions only.
 ///
 /// # Errors
 ///
-/// As [`run`](super::run); [`Error::Usage`] if the folder has files of others. Nothing is written unless every model is printed.
+/// Returns the errors of [`run`](super::run), and [`Error::Usage`] if the folder has files of another origin. Nothing is written unless
+/// every model is printed.
 pub(super) fn write(
     flags: &Shader,
     materials: &[(String, MaterialSpec)],
@@ -127,7 +128,7 @@ pub(super) fn write(
     ))
 }
 
-/// Refuses a folder whose files this command did not write.
+/// Rejects a folder whose files this command did not write.
 fn refuse_others(dir: &Path) -> Result<(), Error> {
     let mut entries = match fs::read_dir(dir) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -143,7 +144,7 @@ fn refuse_others(dir: &Path) -> Result<(), Error> {
     )))
 }
 
-/// Whether a README has the title that this command writes, of any version.
+/// Returns true if a README has the title that this command writes, of any version.
 fn is_of_command(readme: &str) -> bool {
     let title = readme.lines().next().unwrap_or_default();
     let version = title
@@ -154,7 +155,7 @@ fn is_of_command(readme: &str) -> bool {
     })
 }
 
-/// Languages that the flags leave open. SPIR-V needs a feature of the build.
+/// Returns the languages that the flags leave open. SPIR-V needs a feature of the build.
 fn targets(flags: &Shader) -> Vec<ShaderTarget> {
     if let Some(target) = flags.target {
         return vec![target];
@@ -164,7 +165,7 @@ fn targets(flags: &Shader) -> Vec<ShaderTarget> {
         .collect()
 }
 
-/// Ending of the files of a language.
+/// Returns the extension of a language's files.
 const fn ending(target: ShaderTarget) -> &'static str {
     match target {
         ShaderTarget::C => "h",
@@ -176,7 +177,7 @@ const fn ending(target: ShaderTarget) -> &'static str {
     }
 }
 
-/// Row of the index before its links.
+/// Returns the row of the index up to its links.
 fn properties(id: ModelId, program: &Program) -> String {
     let mut functions = program.functions().iter();
     let hit = functions.find(|function| function.name() == Call::EvalHit.name());
@@ -191,7 +192,7 @@ fn properties(id: ModelId, program: &Program) -> String {
     )
 }
 
-/// Lines that the examples print, by the interpreter.
+/// Returns the lines that the examples print, computed by the interpreter.
 fn expected(program: &Program) -> String {
     let run = |call: Call, inputs: &[f32]| program.function(call).run(inputs, Rounding::Once);
     let mut presets = program.presets().iter();
@@ -213,7 +214,7 @@ fn expected(program: &Program) -> String {
     )
 }
 
-/// Name of a type: `KajiyaKay` for `kajiya_kay`.
+/// Returns the name of a type: `KajiyaKay` for `kajiya_kay`.
 fn capitals(name: &str) -> String {
     let capital = |word: &str| {
         let (first, rest) = word.split_at(word.len().min(1));
@@ -222,7 +223,7 @@ fn capitals(name: &str) -> String {
     name.split('_').map(capital).collect()
 }
 
-/// The first entry of every name, and the matched sampler of models that have one; with a word, the entries of that word.
+/// Returns the first entry of every name and the `matched` sampler of models that have one. With a word, returns the entries of that word.
 fn models(word: Option<&str>) -> Result<Vec<ModelId>, Error> {
     let choice = |id: &ModelId| id.choice().map(|(_, word)| word);
     let has = |id: &ModelId| match word {

@@ -111,7 +111,7 @@ fn a_changed_byte_is_found() {
     };
     let bytes = fs::read(&path).expect("read");
     let mut places = 0;
-    // Every digit of the file, header and checksums included, but for those of the format's name.
+    // Every digit of the file, header and checksums included, except those of the format's name.
     for place in (40..bytes.len())
         .filter(|place| bytes[*place].is_ascii_digit())
         .step_by(7)

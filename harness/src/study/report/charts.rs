@@ -1,4 +1,4 @@
-//! The plots of a study: variance, efficiency, gains and weights.
+//! Plots of a study: variance, efficiency, gains and weights.
 
 use super::super::estimator::{Estimator, name, published, samplers, strategies};
 use super::super::finished::Study;
@@ -14,11 +14,11 @@ use hairis_instruments::plot::{Axis, Bar, Series, bars, lines};
 use hairis_instruments::report::Drawing;
 use hairis_instruments::stats::Estimate;
 
-/// The last sentence of captions of bars of [`median_bar`].
+/// Last sentence in captions of charts that use [`median_bar`].
 pub(super) const MEDIANS: &str =
     "Medians over the grid; whiskers go from the first to the third quartile.";
 
-/// A drawing for each model, whose name ends that of its files.
+/// Draws one chart per model. The model's name ends that of the file.
 pub(super) fn each_model(
     slug: &str,
     caption: &str,
@@ -29,12 +29,12 @@ pub(super) fn each_model(
         .into()
 }
 
-/// The runnable samplers on a model.
+/// Returns the runnable samplers on a model.
 pub(super) fn samplers_on(model: ModelKind) -> impl Iterator<Item = Estimator> + Clone {
     samplers().map(move |strategy| (model, strategy))
 }
 
-/// A bar of a median, with the quartiles of its cells, times a factor.
+/// Returns a bar for a median, with the quartiles of its cells, times a factor.
 pub(super) fn median_bar(of: Option<Gain>, factor: f64) -> Bar {
     of.map_or(
         f64::NAN.into(),
@@ -50,7 +50,7 @@ pub(super) fn median_bar(of: Option<Gain>, factor: f64) -> Bar {
     )
 }
 
-/// V of every sampler over the width of R, and over the inclination.
+/// Draws V of every sampler over the width of R, and over the inclination.
 pub(super) fn variances(of: &Study) -> Vec<Drawing> {
     let axes = [
         ("width", "width of R, β_R (°)", of.grid().widths()),
@@ -89,7 +89,7 @@ pub(super) fn variances(of: &Study) -> Vec<Drawing> {
     axes.into_iter().flat_map(charts).collect()
 }
 
-/// Efficiency by samples per shading point.
+/// Draws the efficiency by samples per shading point.
 pub(super) fn efficiencies(of: &Study) -> Vec<Drawing> {
     let caption = "Geometric mean over the grid of 1 / (V · time of a sample), the set-up of a shading point spread over 1, 4 or \
                    16 samples; eight lanes, one thread, this machine. Whiskers are one standard error, that of the times \
@@ -116,7 +116,7 @@ pub(super) fn efficiencies(of: &Study) -> Vec<Drawing> {
     })
 }
 
-/// The verdicts in one plot: the Cauchy model against the Gaussian one, by light.
+/// Draws the verdicts in one plot: the Cauchy model against the Gaussian one, by light.
 pub(super) fn summary(of: &Study) -> Drawing {
     let mut told = TOLD
         .into_iter()
@@ -138,7 +138,7 @@ pub(super) fn summary(of: &Study) -> Drawing {
     Drawing::new("summary", chart, caption)
 }
 
-/// Gains in V by light, over `published`, up to that of perfect sampling.
+/// Draws the gains in V over `published` by light, up to that of perfect sampling.
 pub(super) fn limits(of: &Study) -> Vec<Drawing> {
     let caption = "By what factor fewer samples than the published sampler needs, by light. That is also how many times its \
                    time a sample may take before it loses in equal time. `perfect` draws in proportion to S cos θᵢ, blind to \
@@ -152,7 +152,7 @@ pub(super) fn limits(of: &Study) -> Vec<Drawing> {
     over_published(of, None, words)
 }
 
-/// Gains over `published` by light, a chart for each model: in samples, up to that of perfect sampling, or in equal time.
+/// Draws the gains over `published` by light, a chart for each model: in samples, up to that of perfect sampling, or in equal time.
 fn over_published(
     of: &Study,
     time: Option<Counted>,
@@ -180,7 +180,7 @@ fn over_published(
     })
 }
 
-/// Gains in equal time, by light: over `published`, without and with the look-up, then of the Cauchy model.
+/// Draws the gains in equal time, by light: over `published`, without and with the look-up, then of the Cauchy model.
 pub(super) fn gains(of: &Study) -> Vec<Drawing> {
     let axis = "gain over the published sampler in equal time (×)";
     let title = "Less variance than the published sampler in equal time";
@@ -228,12 +228,12 @@ pub(super) fn gains(of: &Study) -> Vec<Drawing> {
     figures
 }
 
-/// A line in the colour that the sampler has in every chart.
+/// Returns the line in the colour that the sampler has in every chart.
 fn of_sampler(sampler: Sampler, series: Series) -> Series {
     series.styled(sampler.color(), sampler.color())
 }
 
-/// The share of cells in which V of `base` over V of `other` is at most x.
+/// Returns the share of cells in which V of `base` over V of `other` is at most x, as a line.
 fn distribution(of: &Study, label: &str, pair: [Estimator; 2], light: usize) -> Series {
     let mut gains: Vec<f64> = of
         .pairs(pair, light)
@@ -242,7 +242,7 @@ fn distribution(of: &Study, label: &str, pair: [Estimator; 2], light: usize) -> 
     gains.retain(|gain| gain.is_finite() && *gain > 0.0);
     gains.sort_by(f64::total_cmp);
     let n = gains.len() as f64;
-    // A few hundred points say as much as thousands.
+    // A few hundred points show as much as thousands.
     let every = gains.len().div_ceil(300).max(1);
     let points = gains
         .iter()
@@ -254,7 +254,7 @@ fn distribution(of: &Study, label: &str, pair: [Estimator; 2], light: usize) -> 
     )
 }
 
-/// How gains spread over the cells.
+/// Draws the distribution of the gains over the cells.
 pub(super) fn distributions(of: &Study) -> Vec<Drawing> {
     let chart = |title: String, axis: &str, mut series: Vec<Series>| {
         series.push(Series::guide("as good", [(1.0, 0.0), (1.0, 100.0)]));
@@ -300,7 +300,7 @@ pub(super) fn distributions(of: &Study) -> Vec<Drawing> {
     of_cauchy.into_iter().chain(of_samplers).collect()
 }
 
-/// Largest weights, relative to the albedo and to their bounds.
+/// Draws the largest weights, relative to the albedo and to their bounds.
 pub(super) fn weights(of: &Study) -> Vec<Drawing> {
     let caption = "The largest weight S cos θᵢ / pdf of any sample in the worst cell of each inclination, in units of the albedo: \
                    what a firefly under constant light would be. It is the largest of those drawn, and so has no error bar; \
@@ -343,7 +343,7 @@ pub(super) fn weights(of: &Study) -> Vec<Drawing> {
     [largest, bounds].concat()
 }
 
-/// The largest figure of the cells of each inclination, under constant light; none where there is no figure.
+/// Returns the largest figure of the cells of each inclination, under constant light. Inclinations without a figure are left out.
 fn worst(
     of: &Study,
     estimator: Estimator,

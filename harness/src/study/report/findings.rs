@@ -1,4 +1,4 @@
-//! The answer in sentences. Every word that judges follows from figures and their errors.
+//! Findings of a study in sentences. Every word that judges follows from figures and their errors.
 
 use super::super::equal_time::Sign;
 use super::super::estimator::{Estimator, Strategy, name, published, samplers};
@@ -13,7 +13,7 @@ use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::number::{self, percent};
 use std::path::Path;
 
-/// The sentences, in the order in which one would ask.
+/// Returns the sentences, in the order in which a reader would ask.
 pub(super) fn findings(of: &Study, difference: &Difference) -> Vec<String> {
     [
         worth(of),
@@ -26,7 +26,7 @@ pub(super) fn findings(of: &Study, difference: &Difference) -> Vec<String> {
     .into()
 }
 
-/// `1.39×`, with its standard error if that shows.
+/// Returns a ratio such as `1.39×`, with its standard error if that is large enough to show.
 fn times(of: Estimate) -> String {
     if of.standard_error > 0.005 * of.value {
         number::ratio_with_error(of.value, of.standard_error)
@@ -35,12 +35,12 @@ fn times(of: Estimate) -> String {
     }
 }
 
-/// A light in a sentence: a file is the map, which the subtitle names.
+/// Returns a light's name in a sentence. A file is called the map, and the subtitle names it.
 fn said(light: &str) -> &str {
     if is_file(light) { "the map" } else { light }
 }
 
-/// The light that is a file, if there is one.
+/// Returns the light that is a file, if there is one.
 pub(super) fn map(lights: &[String]) -> Option<&String> {
     lights.iter().find(|light| is_file(light))
 }
@@ -49,7 +49,7 @@ fn is_file(light: &str) -> bool {
     Path::new(light).extension().is_some()
 }
 
-/// `a`, `a and b`, `a, b and c`; "nothing" for no words.
+/// Joins words as `a`, `a and b`, `a, b and c`; returns "nothing" for no words.
 fn listed(words: &[String]) -> String {
     match words {
         [] => "nothing".to_owned(),
@@ -58,7 +58,7 @@ fn listed(words: &[String]) -> String {
     }
 }
 
-/// Calls `words` with the place and the name of each light, and lists the results.
+/// Calls `words` with the index and the name of each light, and lists the results.
 fn by_light(of: &Study, words: &dyn Fn(usize, &str) -> Option<String>) -> String {
     let lights = of.lights().iter().enumerate();
     listed(
@@ -76,7 +76,7 @@ fn of_told(words: &dyn Fn(&str, [Estimator; 2]) -> Option<String>) -> Vec<String
         .collect()
 }
 
-/// Is the replacement worth it?
+/// Answers whether the replacement is worth it.
 fn worth(of: &Study) -> String {
     let parts = of_told(&|sampler, pair| {
         let lights = by_light(of, &|light, name| {
@@ -97,8 +97,8 @@ fn worth(of: &Study) -> String {
     )
 }
 
-/// The samplers that are not told from the best of a model under a light, with the best one's gain over `published`; a
-/// look-up of the light is counted if it was timed.
+/// Returns the samplers that do not differ significantly from the best of a model under a light, with the best one's gain over `published`.
+/// A look-up of the light is counted if it was timed.
 fn best(of: &Study, model: ModelKind, light: usize) -> Option<(Vec<Strategy>, Estimate)> {
     let counted = if of.look_up(light).value.is_finite() {
         Counted::LookUp
@@ -128,7 +128,7 @@ fn best(of: &Study, model: ModelKind, light: usize) -> Option<(Vec<Strategy>, Es
     Some((level.map(|(strategy, _)| *strategy).collect(), most))
 }
 
-/// Which sampler?
+/// Answers which sampler is best.
 fn which(of: &Study) -> String {
     let parts = ModelKind::ALL.map(|model| {
         let lights = by_light(of, &|light, light_name| {
@@ -153,7 +153,7 @@ fn which(of: &Study) -> String {
     )
 }
 
-/// A verdict for each light, and one on the looks: the case and the sentence.
+/// Returns a verdict for each light, and one on the looks: the case and the sentence.
 pub(super) fn verdicts(of: &Study, difference: &Difference) -> Vec<[String; 2]> {
     let mut verdicts = Vec::new();
     for (light, name) in of.lights().iter().enumerate() {
@@ -189,13 +189,14 @@ pub(super) fn verdicts(of: &Study, difference: &Difference) -> Vec<[String; 2]> 
     verdicts
 }
 
-/// L1 with a choice of widths, as it is and after the blur.
+/// Returns L1 with a choice of widths, as it is and after the blur.
 fn l1(difference: &Difference, width: Width) -> [Summary; 2] {
     let figures: [fn(&Differences) -> f64; 2] = [|f| f.plain.l1, |f| f.blurred.l1];
     figures.map(|figure| difference.summary(width, figure))
 }
 
-/// How far sampling of the hair can go under the environment: V of `published` over that of perfect sampling, and of `matched`.
+/// Returns the limit of sampling the hair alone under the environment: V of `published` over that of perfect sampling, and over that of
+/// `matched`.
 pub(super) fn limit(of: &Study) -> Option<String> {
     let light = environment(of.lights())?;
     let name = &of.lights()[light];
@@ -221,7 +222,7 @@ pub(super) fn limit(of: &Study) -> Option<String> {
     ))
 }
 
-/// Sentences on the change in looks.
+/// Describes the change in looks.
 fn looks(difference: &Difference) -> String {
     let [plain, blurred] = l1(difference, Width::Paper).map(|of| [of.median, of.most].map(percent));
     let albedo = difference.summary(Width::Paper, albedo_ratio);
@@ -242,7 +243,7 @@ fn looks(difference: &Difference) -> String {
     )
 }
 
-/// Sentences on the Cauchy model whose parameters are fitted.
+/// Describes the Cauchy model whose parameters are fitted.
 fn refitted(of: &Study, difference: &Difference) -> String {
     let [equal, fitted] = [Width::Paper, Width::Refitted]
         .map(|width| l1(difference, width).map(|of| [of.median, of.most].map(percent)));
@@ -268,7 +269,7 @@ fn refitted(of: &Study, difference: &Difference) -> String {
     )
 }
 
-/// Sentences on the cost.
+/// Describes the cost of a sample.
 fn cost(of: &Study) -> String {
     let parts = of_told(&|sampler, pair| {
         let [gaussian, cauchy] = pair.map(|one| of.ns(one, MANY));
@@ -303,7 +304,7 @@ fn cost(of: &Study) -> String {
     )
 }
 
-/// In which conditions not?
+/// Answers under which conditions the replacement is not worth it.
 fn where_not(difference: &Difference) -> String {
     let mut found = difference.along(difference.grid.widths(), Width::Paper, |f| f.plain.l1);
     found.sort_by(|(_, a), (_, b)| a.median.total_cmp(&b.median));

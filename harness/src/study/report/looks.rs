@@ -1,4 +1,4 @@
-//! The plots of how different the models look.
+//! Plots of how different the models look.
 
 use crate::difference::{Difference, Differences, Summary, Width, albedo_ratio};
 use crate::figures;
@@ -10,10 +10,10 @@ use hairis_variants::Cauchy;
 /// Inclination of the viewer in the pictures of the default hair, in degrees.
 const THETA_O_DEG: f64 = 45.0;
 
-/// A difference by name.
+/// Name of a difference, and the function that returns it.
 type NamedDifference = (&'static str, fn(&Differences) -> f64);
 
-/// The default hair: sections and maps.
+/// Draws the default hair: sections and maps.
 pub(super) fn pictures() -> Vec<Drawing> {
     let (hair, theta_o) = (HairParams::bright(), THETA_O_DEG.to_radians());
     let variants = [
@@ -26,7 +26,7 @@ pub(super) fn pictures() -> Vec<Drawing> {
     all
 }
 
-/// The differences over the grid.
+/// Draws the differences over the grid.
 pub(super) fn charts(of: &Difference) -> Vec<Drawing> {
     let width = || Axis::linear("width of R, β_R (°)");
     let l1 = || Axis::linear("difference of S cos θᵢ, L1 (%)");
@@ -87,7 +87,7 @@ pub(super) fn charts(of: &Difference) -> Vec<Drawing> {
     .into()
 }
 
-/// A choice of widths with its factor.
+/// Returns the name of a choice of widths, with its factor.
 fn named(of: &Difference, width: Width) -> String {
     let factor = of.factor(width);
     if factor.is_empty() {

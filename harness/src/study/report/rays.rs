@@ -1,4 +1,4 @@
-//! The section on rays chosen from candidates.
+//! Section of the report on rays that are chosen from candidates.
 
 use super::super::equal_time::count_cells;
 use super::super::estimator::{Estimator, on_each_model, samplers};
@@ -25,7 +25,7 @@ pub(super) fn section(of: &Study) -> Section {
         .tables([variances(of), equal_time(of)])
 }
 
-/// V of a ray by `base` over V of a ray by `other`, cell by cell.
+/// Returns V of a ray by `base` over V of a ray by `other`, cell by cell.
 fn ratio(of: &Study, one: Estimator, light: usize, [base, other]: [usize; 2]) -> Option<Gain> {
     gain(
         of.rows_of(one, light)
@@ -33,7 +33,7 @@ fn ratio(of: &Study, one: Estimator, light: usize, [base, other]: [usize; 2]) ->
     )
 }
 
-/// Medians of V and of its ratios to that of MIS.
+/// Returns the table of medians of V and of its ratios to that of MIS.
 fn variances(of: &Study) -> Table {
     let headers = RAYS.iter().map(|by| by.name.to_owned());
     let headers = headers.chain(POOLS.map(|by| format!("{} / MIS", RAYS[by].name)));
@@ -73,7 +73,7 @@ fn variances(of: &Study) -> Table {
     )
 }
 
-/// Gains over MIS in equal time, by the price of a ray.
+/// Returns the table of gains over MIS in equal time, by the price of a ray.
 fn equal_time(of: &Study) -> Table {
     let prices = POOLS.map(|by| PRICES_US.map(|price| format!("{}, {price} µs", RAYS[by].name)));
     let headers = RAYS
@@ -112,7 +112,7 @@ fn equal_time(of: &Study) -> Table {
     )
 }
 
-/// V of MIS over V of a ray from 8 + 8 candidates, by light.
+/// Draws V of MIS over V of a ray from 8 + 8 candidates, by light.
 fn charts(of: &Study) -> Vec<Drawing> {
     let caption = "By what factor less variance one ray has that is chosen from 8 + 8 candidates, without occlusion, by light.";
     each_model(

@@ -1,4 +1,4 @@
-//! Tables that only the report has.
+//! Tables of a study that only the report has.
 
 use super::super::estimator::{name, on_each_model, published, samplers, strategies};
 use super::super::finished::Study;
@@ -8,7 +8,7 @@ use super::super::view::{mean_of, mean_v};
 use hairis_instruments::table::{Table, number};
 use serde_json::Value;
 
-/// Quality and times of every sampler, and times of the look-ups.
+/// Returns tables of the quality and the times of every sampler, and of the times of look-ups.
 pub(super) fn all(of: &Study) -> [Table; 3] {
     let headers = [
         "V",
@@ -23,7 +23,7 @@ pub(super) fn all(of: &Study) -> [Table; 3] {
         on_each_model(strategies()),
         &|one, light| {
             let rows = || of.rows_of(one, light);
-            // V that is 0 in every cell has no geometric mean.
+            // If V is 0 in every cell, it has no geometric mean.
             let is_even = rows().all(|row| row.v().value == 0.0);
             let v = if is_even {
                 "0".to_owned()
@@ -81,7 +81,7 @@ pub(super) fn all(of: &Study) -> [Table; 3] {
     ]
 }
 
-/// The verdicts in a `claims.json`; `None` if it holds none.
+/// Returns the table of the verdicts in a `claims.json`; `None` if it holds none.
 pub(super) fn claims(of: &Value) -> Option<Table> {
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     let mut table =

@@ -1,4 +1,4 @@
-//! The files of a finished study.
+//! Files of a finished study, with their rows, columns and figures.
 
 use super::{CELLS, reference};
 #[cfg(feature = "parquet")]
@@ -9,9 +9,9 @@ use serde_json::Value;
 use std::collections::HashMap;
 use std::fs;
 
-/// The samplers that are drawn from.
+/// Number of samplers that can be run.
 const SAMPLERS: usize = hairis_harness::sampler::Sampler::ALL.len();
-/// Rows of a cell: two models, each sampler and perfect sampling, five lights.
+/// Number of rows of a cell: two models, each sampler and perfect sampling, five lights.
 const ROWS_OF_A_CELL: usize = 2 * (SAMPLERS + 1) * 5;
 
 fn csv(name: &str) -> Vec<Vec<String>> {
@@ -31,7 +31,7 @@ fn the_rows_are_all_there() {
     );
     let column = |name: &str| rows[0].iter().position(|of| of == name).unwrap();
     for row in &rows[1..] {
-        // The standard error of a V, of a divergence; the largest contribution is at least the mean.
+        // No figure is missing or negative, standard errors included; the largest contribution is at least the mean.
         for name in [
             "v",
             "v_se",
@@ -72,7 +72,7 @@ fn the_rows_are_all_there() {
     }
 }
 
-/// The rows of a file, each as its values by name.
+/// Returns the rows of a file, each as its values by name.
 fn named(name: &str) -> Vec<HashMap<String, String>> {
     let rows = csv(name);
     rows[1..]
@@ -108,7 +108,7 @@ fn rays_have_their_variances_and_gains() {
                 .unwrap()
         };
         let v = ["mis", "4_4", "8_8"].map(|by| number(&format!("v_{by}")));
-        // The balance heuristic over n + n candidates has at most 1/(2n) of the variance of one sample of it.
+        // The balance heuristic over n + n candidates has at most 1/(2n) of the variance of one of its samples.
         for (by, bound) in [("4_4", 8.0), ("8_8", 16.0)] {
             let [(a, da), (b, db)] =
                 ["mis", by].map(|by| (number(&format!("v_{by}")), number(&format!("v_{by}_se"))));
@@ -213,7 +213,7 @@ fn efficiencies_follow_from_variances_and_times() {
                 ),
                 "{n}: {row:?}"
             );
-            // At least that of the variances.
+            // The error is at least that of the variances.
             let least = if row["sampler"] == "published" {
                 0.0
             } else {
@@ -402,7 +402,7 @@ fn the_refit_has_parameters_and_v_of_every_cell() {
         assert!(number(column("beta[0]")) > 0.01, "{row:?}");
         let [published, matched] = ["published_constant", "matched_constant"].map(v);
         assert!(number(matched) < number(published), "{row:?}");
-        // The same hair from the next inclination.
+        // The next cell has the same hair, from another inclination.
         if row[1..6] == next[1..6] {
             assert_eq!(row[column("alpha[0]")..], next[column("alpha[0]")..]);
         }

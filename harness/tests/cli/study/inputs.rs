@@ -1,4 +1,4 @@
-//! Files that a study reads beside its parts: environments and claims; and a standard output that nobody reads.
+//! Files that a study reads beside its parts, which are environments and claims; and a standard output that nobody reads.
 
 use super::{CELLS, Run, assert_refused, lend, merge, reference};
 use crate::cli::{command, run};
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use tempfile::TempDir;
 
-/// An `OpenEXR` map of one colour.
+/// Writes an `OpenEXR` map of one colour.
 fn map(dir: &Path, [width, height]: [u32; 2], pixel: [f32; 3]) -> PathBuf {
     let path = dir.join("map.exr");
     let map = Rgb32FImage::from_pixel(width, height, image::Rgb(pixel));
@@ -62,7 +62,7 @@ fn a_layer_that_is_not_there_is_refused() {
     }
 }
 
-/// One cell in a folder, and a refusal of the rest, one line each.
+/// Computes one cell in a folder of any name. Merging this part alone is rejected in one line.
 #[cfg(unix)]
 #[test]
 fn any_path_works() {
@@ -86,7 +86,7 @@ fn any_path_works() {
         assert_eq!(run.code, Some(0), "{name:?}: {:?}", run.err);
         let lines = run.err.len();
         assert!(inside.join("cells-1-of-48.jsonl").exists(), "{name:?}");
-        // Named in as many lines, resumed.
+        // A resumed run prints as many lines.
         assert_eq!(
             call(&[study, quick, shard, first, out, here, env, sky])
                 .err
@@ -103,7 +103,7 @@ fn any_path_works() {
 fn a_stretched_map_is_reported() {
     let dir = TempDir::new().unwrap();
     let path = map(dir.path(), [4, 4], [1.0; 3]);
-    // The folder cannot be made: the run ends before its work begins.
+    // The folder cannot be made, so that the run ends before its work begins.
     let out = path.join("out");
     for name in ["compare", "study"] {
         let run = run(
@@ -131,7 +131,7 @@ fn a_stretched_map_is_reported() {
     }
 }
 
-/// A `claims.json` that belongs to the reference.
+/// Returns a `claims.json` that belongs to the reference.
 fn claims() -> Value {
     let header = hairis_harness::study::part::read(&reference().join(super::WHOLE))
         .unwrap()

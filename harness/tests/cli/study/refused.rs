@@ -1,4 +1,4 @@
-//! Refusals of a study: flags, and files that belong to another one.
+//! Studies that are rejected because of their flags, or of files that belong to another study.
 
 use super::{FIGURES, WHOLE, assert_refused, lend, merge, reference, study};
 use crate::cli::{names, run};
@@ -56,7 +56,7 @@ fn other_bad_flags_are_refused() {
     }
 }
 
-/// A folder with a copy of the reference's part file.
+/// Returns a folder with a copy of the reference's part file.
 fn copied() -> TempDir {
     let dir = TempDir::new().unwrap();
     fs::copy(reference().join(WHOLE), dir.path().join(WHOLE)).unwrap();
@@ -80,7 +80,7 @@ fn cells_of_another_run_are_refused() {
         "a refused file is left alone"
     );
 
-    // An older program, another instruction set.
+    // As of an older program, or of another instruction set.
     let whole = part::read(&dir.path().join(WHOLE)).unwrap();
     for field in ["format", "version", "commit", "level", "environment"] {
         let mut header = serde_json::to_value(&whole.header).unwrap();
@@ -91,7 +91,7 @@ fn cells_of_another_run_are_refused() {
             &format!("belongs to a run with {field} \"other\""),
         );
     }
-    // The format before there were rays: nothing of pools in its header.
+    // The format before there were rays has no pools in its header.
     let mut header = serde_json::to_value(&whole.header).unwrap();
     header["format"] = "hairis-study-3".into();
     header.as_object_mut().unwrap().remove("pools");
@@ -157,7 +157,7 @@ fn damage_before_the_last_line_is_refused() {
     with(4, &lines[3].replacen("1.", "2.", 1));
     let words = "line 4 is damaged: its checksum is wrong; delete the line, and `hairis study` computes it again";
     assert_refused(&merge(dir.path(), &[dir.path()]), words);
-    // As the message says.
+    // The message asks to delete the line.
     with(4, "");
     let text = fs::read_to_string(&path).unwrap().replace("\n\n", "\n");
     fs::write(&path, text).unwrap();
@@ -174,7 +174,7 @@ fn parts_that_do_not_belong_together_are_refused() {
     let out = TempDir::new().unwrap();
     let shard = |seed: &str, shard: &str| {
         let dir = TempDir::new().unwrap();
-        // Nobody looks at more than the first line.
+        // Only the first line matters here.
         let run = study(dir.path(), "2", &["--seed", seed, "--shard", shard]);
         assert_eq!(run.code, Some(0), "{:?}", run.err);
         dir

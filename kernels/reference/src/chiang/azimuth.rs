@@ -1,8 +1,8 @@
-//! The azimuthal lobe: a logistic cut to one turn.
+//! Azimuthal lobe: a logistic distribution cut to one turn.
 
 use crate::Real;
 
-/// A logistic of scale s on `[-pi, pi]`: Chiang et al. 2016, section 3.
+/// Logistic distribution of scale s on `[-pi, pi]`: Chiang et al. 2016, section 3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Logistic<T> {
     scale: T,
@@ -22,7 +22,7 @@ impl<T: Real> Logistic<T> {
         }
     }
 
-    /// `e / (s (1 + e)^2 K)`, with `e = exp(-|x| / s)` and K the mass within `[-pi, pi]`.
+    /// Evaluates the density `e / (s (1 + e)^2 K)`, with `e = exp(-|x| / s)` and K the mass within `[-pi, pi]`.
     pub(super) fn density(&self, x: T) -> T {
         let e = (-x.abs() / self.scale).exp();
         let sum = T::from_f64(1.0) + e;
@@ -35,7 +35,7 @@ impl<T: Real> Logistic<T> {
         (self.scale * odds.ln()).max(-T::PI).min(T::PI)
     }
 
-    /// From the nearer end, so that both tails keep their digits.
+    /// Computes the cdf from the nearer end, so that both tails keep their digits.
     pub(super) fn cdf(&self, x: T) -> T {
         let one = T::from_f64(1.0);
         let e = (-x.abs() / self.scale).exp();
@@ -44,7 +44,7 @@ impl<T: Real> Logistic<T> {
     }
 }
 
-/// `x` brought to `[-pi, pi]` by whole turns.
+/// Moves `x` to `[-pi, pi]` by whole turns.
 pub(super) fn wrap<T: Real>(x: T) -> T {
     let turn = T::PI + T::PI;
     x - turn * (x / turn).round()

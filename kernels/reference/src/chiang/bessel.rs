@@ -1,11 +1,11 @@
-//! The modified Bessel function of the first kind and order 0, scaled.
+//! Scaled modified Bessel function of the first kind and order 0.
 
 use crate::Real;
 
-/// `exp(-x) I0(x)`, `x >= 0`.
+/// Computes the scaled modified Bessel function `exp(-x) I0(x)`, for `x >= 0`.
 ///
-/// - Source: Abramowitz & Stegun 9.6.12 (power series) below 30 and 9.7.1 (asymptotic series) above, both summed to the last
-///   bit in `f64`; in `f32`, where it is the inner loop of a baseline, polynomials as good, of the same fit as the kernels'.
+/// - Source: in `f64` Abramowitz & Stegun 9.6.12 (power series) below 30 and 9.7.1 (asymptotic series) above, both summed to the
+///   last bit. In `f32`, where it is the inner loop of a baseline, polynomials of the same accuracy and fit as those of the kernels.
 ///
 /// ```
 /// use hairis_reference::bessel_i0_scaled;
@@ -39,7 +39,7 @@ fn summed<T: Real>(x: T) -> T {
     sum / (number(2.0) * T::PI * x).sqrt()
 }
 
-/// Polynomials fitted to 2e-7: in `x` squared below 5.5, in its inverse above.
+/// Evaluates polynomials fitted to 2e-7: in `x` squared below 5.5, and in its inverse above.
 fn fitted<T: Real>(x: T) -> T {
     const SERIES: [f32; 8] = [
         0.999_999_964_93,

@@ -1,13 +1,13 @@
-//! The longitudinal lobe: a spherical Gaussian summed around the fibre.
+//! Longitudinal lobe: a spherical Gaussian summed around the fibre.
 
 use super::bessel_i0_scaled;
 use crate::Real;
 
-/// Light spread about the cone of inclination `-theta'` with variance v: d'Eon et al. 2011.
+/// Cone of inclination `-theta'` about which light spreads with variance v: d'Eon et al. 2011.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cone<T> {
     variance: T,
-    /// Sine and cosine of theta', the cosine at least 0.
+    /// Sine and cosine of theta'; the cosine is at least 0.
     sin: T,
     cos: T,
 }
@@ -21,10 +21,10 @@ impl<T: Real> Cone<T> {
         (-self.sin).atan2(self.cos)
     }
 
-    /// M: `csch(1/v) / (2 v) exp(-sin theta_i sin theta' / v) I0(cos theta_i cos theta' / v)`, its three exponents added up
-    /// before they overflow (variants/ERRATA.md E8).
+    /// Evaluates M: `csch(1/v) / (2 v) exp(-sin theta_i sin theta' / v) I0(cos theta_i cos theta' / v)`, whose three exponents are
+    /// added before they overflow (variants/ERRATA.md E8).
     ///
-    /// They add up to `(cos(theta_i + theta') - 1) / v`, half the squared distance of two points of a circle.
+    /// The exponents add up to `(cos(theta_i + theta') - 1) / v`, half the squared distance of two points of a circle.
     pub(super) fn density(&self, sin_theta_i: T, cos_theta_i: T) -> T {
         let (two, v) = (T::from_f64(2.0), self.variance);
         let (x, y) = (cos_theta_i - self.cos, sin_theta_i + self.sin);
@@ -32,7 +32,7 @@ impl<T: Real> Cone<T> {
         exponent.exp() * bessel_i0_scaled(cos_theta_i * self.cos / v) / (v * -(-two / v).exp_m1())
     }
 
-    /// `1 - cos` of the angle from the cone's mantle: density `exp(-delta / v)` on `[0, 2]`.
+    /// Draws `1 - cos` of the angle from the cone's mantle, of density `exp(-delta / v)` on `[0, 2]`.
     pub(super) fn sample(&self, xi: T) -> T {
         let (two, v) = (T::from_f64(2.0), self.variance);
         (-v * (xi * (-two / v).exp_m1()).ln_1p()).min(two)
@@ -42,7 +42,7 @@ impl<T: Real> Cone<T> {
         (-delta / self.variance).exp_m1() / (-T::from_f64(2.0) / self.variance).exp_m1()
     }
 
-    /// Sine and cosine of the inclination at `delta` and half a turn times `xi_turn` about the direction -theta'.
+    /// Returns sine and cosine of the inclination at `delta` and at half a turn times `xi_turn` about the direction -theta'.
     pub(super) fn direction(&self, delta: T, xi_turn: T) -> [T; 2] {
         let along = T::from_f64(1.0) - delta;
         let across = (delta * (T::from_f64(2.0) - delta)).sqrt();

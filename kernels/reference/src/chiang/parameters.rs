@@ -1,21 +1,21 @@
-//! Widths, shifts and absorption, and the choice of a lobe.
+//! Formulas of widths, shifts and absorption, and the criterion for the choice of a lobe.
 
 use crate::Real;
 use hairis::PerLobe;
 use hairis_variants::chiang::{ChiangDesc, Shifts};
 
-/// Criterion for the choice of a lobe.
+/// Criterion by which the sampler chooses a lobe.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Selection {
-    /// The mean over the channels of each lobe's attenuation: the least variance of a grey result.
+    /// Mean over the channels of each lobe's attenuation, which gives the least variance of a grey result.
     #[default]
     Mean,
-    /// The lobe's shares of red, green and blue, `sqrt(sum_c (A_pc / sum_k A_kc)^2)`: evens out the channels.
+    /// The lobe's shares of red, green and blue, `sqrt(sum_c (A_pc / sum_k A_kc)^2)`, which even out the variances of the channels.
     ByChannel,
 }
 
 impl Selection {
-    /// The criterion of [`Chiang`](hairis_variants::Chiang) with this constant.
+    /// Returns the criterion of [`Chiang`](hairis_variants::Chiang) with this value of its constant.
     #[inline]
     #[must_use]
     pub const fn of(by_channel: bool) -> Self {
@@ -27,7 +27,7 @@ impl Selection {
     }
 }
 
-/// Formulas of the parameters, in either precision.
+/// Formulas of the parameters of the model of Chiang et al., in either precision.
 pub trait ChiangFormulas<T: Real>: Sized {
     /// Sets the absorption of melanin: see [`ChiangDesc::with_melanin`].
     #[must_use]
@@ -41,20 +41,20 @@ pub trait ChiangFormulas<T: Real>: Sized {
     #[must_use]
     fn with_color(self, color: [T; 3]) -> Self;
 
-    /// Longitudinal variances of R, TT, TRT and the rest: `v0`, `v0 / 4`, `4 v0`, `4 v0`, with
+    /// Computes the longitudinal variances of R, TT, TRT and the rest: `v0`, `v0 / 4`, `4 v0`, `4 v0`, with
     /// `v0 = (.726 beta_m + .812 beta_m^2 + 3.7 beta_m^20)^2`.
     ///
     /// - Source: Chiang et al. 2016, section 4.
     #[must_use]
     fn variances(&self) -> PerLobe<T>;
 
-    /// Scale of the azimuthal logistic, rad: `sqrt(pi / 8) (.265 beta_n + 1.194 beta_n^2 + 5.372 beta_n^22)`.
+    /// Computes the scale of the azimuthal logistic, rad: `sqrt(pi / 8) (.265 beta_n + 1.194 beta_n^2 + 5.372 beta_n^22)`.
     ///
     /// - Source: Chiang et al. 2016, section 4.
     #[must_use]
     fn scale(&self) -> T;
 
-    /// Shifts of `theta_i + theta_o`, rad: -2, +1, +4 and 0 tilts (d'Eon et al. 2011), or `2 p eta - 2` tilts.
+    /// Computes the shifts of `theta_i + theta_o`, rad: -2, +1, +4 and 0 tilts (d'Eon et al. 2011), or `2 p eta - 2` tilts.
     #[must_use]
     fn shift_angles(&self) -> PerLobe<T>;
 }

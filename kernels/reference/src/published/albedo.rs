@@ -1,10 +1,11 @@
-//! Directional albedos of the lobes.
+//! Directional albedos of the lobes of the published model, by quadrature.
 
 use super::{HairReference, colours};
 use crate::{Real, integrate};
 use hairis::{Lobe, PerLobe};
 
-/// The product of two integrals: `bell(theta_h - alpha) (cos theta_i / cos theta_d)^2` over `theta_i`, and N over `phi`.
+/// Computes each albedo as the product of two integrals: `bell(theta_h - alpha) (cos theta_i / cos theta_d)^2` over `theta_i`, and N
+/// over `phi`.
 pub(super) fn albedo<T: Real>(book: &HairReference<T>) -> PerLobe<[T; 3]> {
     let (zero, half, two) = (T::default(), T::from_f64(0.5), T::from_f64(2.0));
     let p = &book.parameters;

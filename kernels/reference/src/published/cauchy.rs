@@ -1,8 +1,8 @@
-//! The Cauchy distribution on an interval, from which the published sampler draws.
+//! Cauchy distribution on an interval, from which the published sampler draws.
 
 use crate::Real;
 
-/// A Cauchy density cut to `[lo, hi]` and normalised there: the sampler of M, of TT and of one glint.
+/// Cauchy density cut to `[lo, hi]` and normalised there, from which M, TT and one glint are sampled.
 ///
 /// - Source: Ou et al. 2012, appendices A, C and D.
 /// - Units: rad.
@@ -19,17 +19,17 @@ pub struct CauchyDensity<T> {
     scale: T,
     lo: T,
     hi: T,
-    /// B (D of the glint): `atan((lo - location) / scale)`.
+    /// B (D for the glint): `atan((lo - location) / scale)`.
     atan_lo: T,
-    /// A - B (C - D of the glint, C of TT).
+    /// A - B (C - D for the glint, C for TT).
     span: T,
 }
 
 impl<T: Real> CauchyDensity<T> {
-    /// The density of peak `location` and half width at half maximum `scale` on `[lo, hi]`.
+    /// Makes the density of peak `location` and half width at half maximum `scale` on `[lo, hi]`.
     ///
-    /// A - B is formed as `atan2(scale (hi - lo), scale^2 + lo hi)`, bounds taken from `location`: the difference of
-    /// two arc tangents loses every digit when a narrow lobe lies outside the interval.
+    /// A - B is computed as `atan2(scale (hi - lo), scale^2 + lo hi)`, with bounds measured from `location`, because the difference
+    /// of two arc tangents loses every digit when a narrow lobe lies outside the interval.
     #[inline]
     #[must_use]
     pub fn new(location: T, scale: T, lo: T, hi: T) -> Self {
@@ -44,11 +44,11 @@ impl<T: Real> CauchyDensity<T> {
         }
     }
 
-    /// Density of [`sample`](Self::sample) at `x`.
+    /// Returns the density with which [`sample`](Self::sample) draws `x`.
     ///
     /// `scale / (span ((x - location)^2 + scale^2))`
     ///
-    /// - Source: Ou et al. 2012, appendices A, C, D; interval of M by ERRATA E1, of the glint by E3.
+    /// - Source: Ou et al. 2012, appendices A, C, D; interval of M by ERRATA E1, and of the glint by E3.
     /// - Units: per rad of `x`, not per steradian.
     /// - Domain: any `x`. Exactly 0 outside `[lo, hi]`.
     /// - Integral: 1 over `[lo, hi]` (test `reference::each_lobe_and_the_mixture_integrate_to_one`).
@@ -62,9 +62,9 @@ impl<T: Real> CauchyDensity<T> {
         self.scale / (self.span * (from_peak * from_peak + self.scale * self.scale))
     }
 
-    /// Probability that a sample is at most `x`: 0 at `lo`, 1 at `hi` and beyond.
+    /// Returns the probability that a sample is at most `x`: 0 at `lo`, and 1 at `hi` and beyond.
     ///
-    /// `(atan((x - location) / scale) - B) / (A - B)`, the difference formed as A - B is.
+    /// `(atan((x - location) / scale) - B) / (A - B)`, with the difference computed like A - B
     #[inline]
     #[must_use]
     pub fn cdf(&self, x: T) -> T {
@@ -73,12 +73,12 @@ impl<T: Real> CauchyDensity<T> {
         (self.scale * (x - self.lo)).atan2(self.scale * self.scale + below * at) / self.span
     }
 
-    /// The value whose [`cdf`](Self::cdf) is `xi`.
+    /// Returns the value whose [`cdf`](Self::cdf) is `xi`.
     ///
-    /// `scale tan(xi (A - B) + B) + location`, kept within `[lo, hi]` where the tangent overshoots by rounding.
+    /// `scale tan(xi (A - B) + B) + location`, kept within `[lo, hi]` where the tangent overshoots by rounding
     ///
-    /// - Accuracy: error of about `epsilon (x - location)^2 / scale`, negligible in `f64`. In `f32` it is felt by a
-    ///   narrow lobe whose peak lies outside the interval, a loss left in: it is what the printed formula gives.
+    /// - Accuracy: the error is about `epsilon (x - location)^2 / scale`, which is negligible in `f64`. In `f32` it affects a narrow
+    ///   lobe whose peak lies outside the interval, a loss that is left in because the printed formula has it.
     #[inline]
     #[must_use]
     pub fn sample(&self, xi: T) -> T {

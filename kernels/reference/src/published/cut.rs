@@ -1,9 +1,9 @@
-//! A bell cut to an interval.
+//! Bell cut to an interval, from which the matched sampler draws.
 
 use super::Shape;
 use crate::Real;
 
-/// A bell cut to an interval, with its cdf and the inverse of it.
+/// Bell cut to an interval, with its cdf and the inverse of the cdf.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Cut<T> {
     gaussian: bool,
@@ -13,13 +13,13 @@ pub(super) struct Cut<T> {
     pub(super) area: T,
 }
 
-/// Probability that a standard normal number is above `x`.
+/// Returns the probability that a standard normal number is above `x`.
 fn above<T: Real>(x: T) -> T {
     T::from_f64(0.5) * (x / T::from_f64(2.0).sqrt()).erfc()
 }
 
 impl<T: Real> Cut<T> {
-    /// The bell on `[lo, hi]`, in widths from its centre.
+    /// Makes the bell on `[lo, hi]`, in widths from its centre.
     pub(super) fn new(shape: Shape, lo: T, hi: T) -> Self {
         let gaussian = shape == Shape::Gaussian;
         let unit = Self {
@@ -37,7 +37,7 @@ impl<T: Real> Cut<T> {
         }
     }
 
-    /// Integral of the bell from `lo` to `x`.
+    /// Integrates the bell from `lo` to `x`.
     pub(super) fn below(&self, x: T) -> T {
         let (zero, one) = (T::default(), T::from_f64(1.0));
         if !self.gaussian {
@@ -53,7 +53,7 @@ impl<T: Real> Cut<T> {
         (T::PI + T::PI).sqrt() * probability
     }
 
-    /// Integral of the bell from `x` to `hi`: the rest of [`below`](Self::below), without a difference.
+    /// Integrates the bell from `x` to `hi`: the rest of [`below`](Self::below), without a difference.
     fn beyond(&self, x: T) -> T {
         Self {
             lo: -self.hi,
@@ -62,7 +62,7 @@ impl<T: Real> Cut<T> {
         .below(-x)
     }
 
-    /// Probability of at most `x`.
+    /// Returns the probability of a number of at most `x`.
     pub(super) fn cdf(&self, x: T) -> T {
         let x = x.max(self.lo).min(self.hi);
         let (below, beyond) = (self.below(x), self.beyond(x));
@@ -73,8 +73,8 @@ impl<T: Real> Cut<T> {
         }
     }
 
-    /// The point whose [`cdf`](Self::cdf) is `xi`: of a Cauchy the nearer end turned by its part of the angle, of a Gaussian
-    /// by bisection.
+    /// Returns the point whose [`cdf`](Self::cdf) is `xi`: for a Cauchy by turning the nearer end by its part of the angle, and for
+    /// a Gaussian by bisection.
     pub(super) fn sample(&self, xi: T) -> T {
         let (one, half) = (T::from_f64(1.0), T::from_f64(0.5));
         if !self.gaussian {

@@ -1,24 +1,24 @@
-//! The shape of the bells, and the choice of a sampler.
+//! Shape of the bells, and the choice of a sampler at run time.
 
 use super::{HairReference, MatchedReference};
 use crate::{Real, Reference};
 use hairis::params::HairDesc;
 
-/// The bell all the lobes of a model are made of; its peak is 1 (the paper's energies hold only so, ERRATA E4).
+/// Bell that all lobes of a model are made of; its peak is 1, because the paper's energies hold only for unit peaks (ERRATA E4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
-    /// `exp(-x^2 / (2 width^2))`: the published model.
+    /// `exp(-x^2 / (2 width^2))`, the Gaussian of the published model.
     Gaussian,
-    /// `width^2 / (x^2 + width^2)`: the all-Cauchy variant of section 3.3.
+    /// `width^2 / (x^2 + width^2)`, the bell of the all-Cauchy variant of section 3.3.
     Cauchy,
 }
 
 impl Shape {
-    /// The bell of width `width` at a distance `x` from its peak.
+    /// Evaluates the bell of width `width` at a distance `x` from its peak.
     ///
     /// - Source: Ou et al. 2012, sections 3.1 (g) and 3.3, both scaled to a peak of 1.
     /// - Units: rad; the result has none.
-    /// - Accuracy: that of `libm`. Exponents are not clamped: far from the peak an `f32` Gaussian may be denormal.
+    /// - Accuracy: that of `libm`. Exponents are not clamped, so that far from the peak an `f32` Gaussian may be denormal.
     ///
     /// ```
     /// use hairis_reference::Shape;
@@ -37,20 +37,20 @@ impl Shape {
 /// The published model with a bell and a sampler chosen at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HairFormulas {
-    /// The bell.
+    /// Bell of the lobes.
     pub shape: Shape,
     /// Number of bands of the matched sampler, 5, 9 or 25; `None` for the published sampler.
     pub bands: Option<usize>,
-    /// Whether the matched sampler chooses lobes by channel.
+    /// True if the matched sampler chooses lobes by channel.
     pub by_channel: bool,
 }
 
 impl HairFormulas {
-    /// Computes the constants of `parameters` and `wo`.
+    /// Computes the constants of `parameters` and `wo` for the chosen bell and sampler.
     ///
     /// # Panics
     ///
-    /// If there is no matched sampler of so many bands.
+    /// Panics if there is no matched sampler with this number of bands.
     #[must_use]
     pub fn prepare<T: Real>(&self, parameters: &HairDesc<T>, wo: [T; 3]) -> Box<dyn Reference<T>> {
         let Some(bands) = self.bands else {

@@ -7,10 +7,10 @@ use crate::{LobeAt, Real, Reference, ReferenceSample};
 use hairis::params::HairDesc;
 use hairis::{Lobe, LobeMask, PerLobe};
 
-/// Most bands.
+/// Largest number of bands.
 const MOST: usize = 25;
 
-/// Sines of the inclinations where bands end, the pole left out, down to the band in the middle.
+/// Returns the sines of the inclinations where bands end, without the pole, down to the band in the middle.
 const fn ends(bands: usize) -> &'static [f32] {
     match bands {
         5 => &[0.935, 0.598],
@@ -23,7 +23,7 @@ const fn ends(bands: usize) -> &'static [f32] {
     }
 }
 
-/// The model with its matched sampler, for one set of parameters and one `wo`.
+/// The published model with its matched sampler, for one set of parameters and one `wo`.
 ///
 /// ```
 /// use hairis::HairParams;
@@ -37,22 +37,22 @@ const fn ends(bands: usize) -> &'static [f32] {
 pub struct MatchedReference<T> {
     book: HairReference<T>,
     longitudinal: PerLobe<Cut<T>>,
-    /// Number of bands, from the lower pole to the upper, their sines, and the constant for W in each.
+    /// Number of bands, the sines at their ends from the lower pole to the upper, and the constant for W in each.
     bands: usize,
     sines: [T; MOST + 1],
     heights: [T; MOST],
-    /// Integral of each lobe's bell, times W, up to where a band begins.
+    /// Integral of each lobe's bell, times W, up to the start of each band.
     areas: PerLobe<[T; MOST + 1]>,
-    /// TT's azimuth from its centre to one side, and a glint's from `phi = 0` to pi.
+    /// Azimuth of TT from its centre to one side, and azimuth of a glint from `phi = 0` to pi.
     transmission: Cut<T>,
     glint: Cut<T>,
-    /// Integral of each lobe without its colour, and with the mean of its channels.
+    /// Integral of each lobe, without its colour and with the mean of its channels.
     extents: PerLobe<T>,
     energies: PerLobe<T>,
     probabilities: PerLobe<T>,
 }
 
-/// `(cos theta_i / cos theta_d)^2`.
+/// Returns W, `(cos theta_i / cos theta_d)^2`.
 fn w<T: Real>(theta_i: T, theta_o: T) -> T {
     let cos_theta_d = (T::from_f64(0.5) * (theta_o - theta_i)).cos();
     let ratio = theta_i.cos().max(T::default()) / cos_theta_d;
@@ -68,7 +68,7 @@ impl<T: Real> MatchedReference<T> {
     ///
     /// # Panics
     ///
-    /// If `bands` is none of these.
+    /// Panics if `bands` is none of these numbers.
     #[inline]
     #[must_use]
     pub fn prepare(parameters: &HairDesc<T>, shape: Shape, wo: [T; 3], bands: usize) -> Self {
@@ -88,7 +88,7 @@ impl<T: Real> MatchedReference<T> {
         for (height, ends) in heights.iter_mut().zip(sines[..=bands].windows(2)) {
             *height = w((half * (ends[0] + ends[1])).asin(), book.theta_o);
         }
-        // They ascend to the band in the middle.
+        // The constants ascend to the band in the middle.
         for j in 1..=side.len() {
             heights[j] = heights[j].max(heights[j - 1]);
             heights[bands - 1 - j] = heights[bands - 1 - j].max(heights[bands - j]);
@@ -148,7 +148,7 @@ impl<T: Real> MatchedReference<T> {
         this
     }
 
-    /// Selects lobes by their shares of each channel.
+    /// Makes the sampler choose lobes by their shares of each channel.
     #[inline]
     #[must_use]
     pub fn by_channel(self) -> Self {
@@ -175,7 +175,7 @@ impl<T: Real> MatchedReference<T> {
         }
     }
 
-    /// The band of an inclination, by its sine.
+    /// Returns the band of an inclination, which is given by its sine.
     fn band(&self, sin_theta_i: T) -> usize {
         // An end belongs to the band towards the pole.
         let below = |j: &usize| {
@@ -188,21 +188,21 @@ impl<T: Real> MatchedReference<T> {
         (1..self.bands).find(below).unwrap_or(self.bands) - 1
     }
 
-    /// `theta_i` at an offset of `x` widths from a lobe's centre.
+    /// Returns `theta_i` at an offset of `x` widths from a lobe's centre.
     fn theta_i(&self, lobe: Lobe, x: T) -> T {
         let i = lobe.index().min(2);
         let p = &self.book.parameters;
         T::from_f64(2.0) * (x * p.beta[i] + p.alpha[i]) - self.book.theta_o
     }
 
-    /// The offset from a lobe's centre in widths.
+    /// Returns the offset of an inclination from a lobe's centre, in widths.
     fn offset(&self, lobe: Lobe, theta_i: T) -> T {
         let i = lobe.index().min(2);
         let p = &self.book.parameters;
         (T::from_f64(0.5) * (theta_i + self.book.theta_o) - p.alpha[i]) / p.beta[i]
     }
 
-    /// Maximum of W: `ln W` is concave, as W is at most 4.
+    /// Finds the maximum of W by bisection: `ln W` is concave, because W is at most 4.
     fn mode(&self) -> T {
         let number = T::from_f64;
         let (mut lo, mut hi) = (number(-0.5) * T::PI, number(0.5) * T::PI);
@@ -225,7 +225,7 @@ impl<T: Real> MatchedReference<T> {
         pdfs
     }
 
-    /// Density of `theta_i` over W, per radian.
+    /// Returns the density of `theta_i` divided by the constant for W, per radian.
     fn bell_theta(&self, lobe: Lobe, theta_i: T) -> T {
         if self.longitudinal[lobe].area <= T::default() {
             return T::default();
@@ -238,7 +238,7 @@ impl<T: Real> MatchedReference<T> {
         bell / (self.areas[lobe][self.bands] * width)
     }
 
-    /// `theta_i` of a lobe.
+    /// Draws the inclination `theta_i` from a lobe by one uniform number.
     #[inline]
     #[must_use]
     pub fn sample_theta(&self, lobe: Lobe, xi: T) -> T {
@@ -249,7 +249,7 @@ impl<T: Real> MatchedReference<T> {
             .unwrap_or(self.bands)
             - 1;
         let from = cut.below(self.offset(lobe, self.sines[j].asin()));
-        // There is no direction on a pole: keep off it, as the kernels do.
+        // No direction lies on a pole, so samples keep off it like those of the kernels.
         let least = T::from_f64(f64::from(f32::EPSILON) / 8.0);
         let share = (from + (area - areas[j]) / self.heights[j]) / cut.area;
         self.theta_i(
@@ -258,7 +258,7 @@ impl<T: Real> MatchedReference<T> {
         )
     }
 
-    /// Density of `theta_i`, per radian.
+    /// Returns the density with which [`sample_theta`](Self::sample_theta) draws `theta_i`, per radian.
     ///
     /// - Integral: 1 over [-pi/2, pi/2].
     #[inline]
@@ -267,7 +267,7 @@ impl<T: Real> MatchedReference<T> {
         self.heights[self.band(theta_i.sin())] * self.bell_theta(lobe, theta_i)
     }
 
-    /// Probability of an inclination of at most `theta_i`.
+    /// Returns the probability of an inclination of at most `theta_i`.
     #[inline]
     #[must_use]
     pub fn cdf_theta(&self, lobe: Lobe, theta_i: T) -> T {
@@ -281,7 +281,7 @@ impl<T: Real> MatchedReference<T> {
         (areas[j] + self.heights[j] * part) / areas[self.bands]
     }
 
-    /// `phi = phi_o - phi_i`, as [`HairReference::sample_phi`] has it, the glint's in [-pi, pi].
+    /// Draws `phi = phi_o - phi_i` like [`HairReference::sample_phi`], except that the azimuth of the glint is in [-pi, pi].
     #[inline]
     #[must_use]
     pub fn sample_phi(&self, lobe: Lobe, xi: T) -> T {
@@ -296,7 +296,7 @@ impl<T: Real> MatchedReference<T> {
         }
     }
 
-    /// Density of `phi`, per radian, for a `phi` in [-pi, pi].
+    /// Returns the density of `phi`, per radian, for a `phi` in [-pi, pi].
     ///
     /// - Integral: 1 over [-pi, pi].
     #[inline]
@@ -314,7 +314,7 @@ impl<T: Real> MatchedReference<T> {
         }
     }
 
-    /// The `xi` from which [`sample_phi`](Self::sample_phi) draws `phi`, for a `phi` in (-pi, pi].
+    /// Returns the `xi` from which [`sample_phi`](Self::sample_phi) draws `phi`, for a `phi` in (-pi, pi].
     #[inline]
     #[must_use]
     pub fn cdf_phi(&self, lobe: Lobe, phi: T) -> T {
@@ -348,7 +348,7 @@ impl<T: Real> Reference<T> for MatchedReference<T> {
         (self.eval(wi), self.pdf(wi))
     }
 
-    /// As with the published sampler.
+    /// Evaluates S, which is the same as with the published sampler.
     fn eval(&self, wi: [T; 3]) -> [T; 3] {
         self.book.eval(wi)
     }
@@ -365,12 +365,12 @@ impl<T: Real> Reference<T> for MatchedReference<T> {
         })
     }
 
-    /// Its share of the integrals of all, by the mean of their channels or by channel.
+    /// Returns each lobe's share of the integrals of all lobes, by the mean of their channels or by channel.
     fn probabilities(&self) -> PerLobe<T> {
         self.probabilities
     }
 
-    /// A lobe, then `theta_i` and `phi`, by inversion.
+    /// Draws a lobe, and then `theta_i` and `phi` by inversion.
     fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
         let Some((lobe, _)) = choose(&self.probabilities, xi[0]) else {
             return ReferenceSample::default();
@@ -390,8 +390,8 @@ impl<T: Real> Reference<T> for MatchedReference<T> {
         Some([self.cdf_theta(lobe, theta_i), self.cdf_phi(lobe, phi)])
     }
 
-    /// The largest energy over a lobe's probability, times the largest ratio of W to its constant in a band. The first factor
-    /// is the sum of the energies unless lobes are chosen by channel.
+    /// Returns the largest energy over a lobe's probability, times the largest ratio of W to its constant in a band. The first
+    /// factor is the sum of the energies unless lobes are chosen by channel.
     fn weight_bound(&self, mask: LobeMask) -> Option<T> {
         let (zero, theta_o) = (T::default(), self.book.theta_o);
         let lobes = || {
@@ -412,7 +412,7 @@ impl<T: Real> Reference<T> for MatchedReference<T> {
         Some(largest * most)
     }
 
-    /// The ends of the bands, both poles included.
+    /// Returns the ends of the bands, both poles included.
     fn jumps(&self) -> Vec<T> {
         let ends = self.sines[..=self.bands].iter();
         ends.map(|sine| sine.asin()).collect()

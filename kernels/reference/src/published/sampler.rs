@@ -5,7 +5,7 @@ use crate::Real;
 use hairis::Lobe;
 
 impl<T: Real> HairReference<T> {
-    /// The direction a lobe alone draws from two uniform numbers; nothing is discarded.
+    /// Draws a direction from one lobe alone by two uniform numbers; nothing is discarded.
     #[inline]
     #[must_use]
     pub fn sample_lobe(&self, lobe: Lobe, xi_theta: T, xi_phi: T) -> [T; 3] {
@@ -15,14 +15,14 @@ impl<T: Real> HairReference<T> {
         )
     }
 
-    /// `theta_i = 2 beta tan(xi (A - B) + B) + 2 alpha - theta_o`: section 3.2.1, appendix A, ERRATA E1.
+    /// Draws `theta_i = 2 beta tan(xi (A - B) + B) + 2 alpha - theta_o` from a lobe, after section 3.2.1, appendix A and ERRATA E1.
     #[inline]
     #[must_use]
     pub fn sample_theta(&self, lobe: Lobe, xi: T) -> T {
         T::from_f64(2.0) * self.longitudinal[lobe].sample(xi) - self.theta_o
     }
 
-    /// Density of `theta_i`, per radian: the paper's `p(theta_i)` times `cos_theta_i`.
+    /// Returns the density of `theta_i`, per radian: the paper's `p(theta_i)` times `cos_theta_i`.
     ///
     /// - Integral: 1 over [-pi/2, pi/2].
     #[inline]
@@ -32,15 +32,15 @@ impl<T: Real> HairReference<T> {
         self.longitudinal[lobe].pdf((theta_i + self.theta_o) * half) * half
     }
 
-    /// Probability of an inclination of at most `theta_i`; the inverse of [`sample_theta`](Self::sample_theta).
+    /// Returns the probability of an inclination of at most `theta_i`, the inverse of [`sample_theta`](Self::sample_theta).
     #[inline]
     #[must_use]
     pub fn cdf_theta(&self, lobe: Lobe, theta_i: T) -> T {
         self.longitudinal[lobe].cdf((theta_i + self.theta_o) * T::from_f64(0.5))
     }
 
-    /// `phi = phi_o - phi_i` as the paper draws it (section 3.2.2): in [-pi, pi] for R and TRT-g, in [0, 2 pi] for
-    /// TT, in [-pi/2, pi/2] for the glint.
+    /// Draws `phi = phi_o - phi_i` like the paper (section 3.2.2): in [-pi, pi] for R and TRT-g, in [0, 2 pi] for TT, and in
+    /// [-pi/2, pi/2] for the glint.
     #[inline]
     #[must_use]
     pub fn sample_phi(&self, lobe: Lobe, xi: T) -> T {
@@ -53,9 +53,9 @@ impl<T: Real> HairReference<T> {
         }
     }
 
-    /// Density of `phi`, per radian, for a `phi` in [-pi, pi].
+    /// Returns the density of `phi`, per radian, for a `phi` in [-pi, pi].
     ///
-    /// - Integral: 1 over [-pi, pi]. The glint's is exactly 0 beyond pi/2 (ERRATA E3).
+    /// - Integral: 1 over [-pi, pi]. The density of the glint is exactly 0 beyond pi/2 (ERRATA E3).
     #[inline]
     #[must_use]
     pub fn pdf_phi(&self, lobe: Lobe, phi: T) -> T {
@@ -66,8 +66,8 @@ impl<T: Real> HairReference<T> {
         }
     }
 
-    /// The `xi` from which [`sample_phi`](Self::sample_phi) draws `phi`, for a `phi` in (-pi, pi]: the probability
-    /// accumulated from -pi for R and TRT-g, from 0 upwards through pi and -pi for TT and the glint.
+    /// Returns the `xi` from which [`sample_phi`](Self::sample_phi) draws `phi`, for a `phi` in (-pi, pi]: the probability
+    /// accumulated from -pi for R and TRT-g, and from 0 upwards through pi and -pi for TT and the glint.
     #[inline]
     #[must_use]
     pub fn cdf_phi(&self, lobe: Lobe, phi: T) -> T {
@@ -81,7 +81,7 @@ impl<T: Real> HairReference<T> {
         }
     }
 
-    /// `(sin theta_i, cos theta_i cos phi_i, cos theta_i sin phi_i)` with `phi_i = phi_o - phi`.
+    /// Returns the direction `(sin theta_i, cos theta_i cos phi_i, cos theta_i sin phi_i)` with `phi_i = phi_o - phi`.
     #[inline]
     pub(super) fn direction(&self, theta_i: T, phi: T) -> [T; 3] {
         let phi_i = self.phi_o - phi;

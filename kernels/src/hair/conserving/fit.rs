@@ -1,4 +1,5 @@
-//! Fit of a material's albedo: made once per material, in eight lanes that never fuse, so that it has the same bits everywhere.
+//! Fit of a material's albedo. It is made once per material, in eight lanes that never fuse, so that it has the same bits
+//! everywhere.
 
 use super::{AlbedoFit, HairLobes, PIECES, POWERS, Warp};
 use crate::hair::albedo::channels;
@@ -10,23 +11,24 @@ use crate::simd::{Broadcast, Lanes, Vec3x};
 use core::f32::consts::{FRAC_PI_2, PI};
 use wide::f32x8;
 
-/// Inclinations per piece, one per lane.
+/// Number of inclinations per piece, one per lane.
 const NODES: usize = 8;
 
-/// Warps to try, by `near`: the first is that of everyday hair.
+/// Warps to try, given by `near`; the first suits everyday hair.
 const NEAR: [f32; 6] = [0.5, 0.38, 0.8, 0.25, 1.5, 100.0];
 
-/// Largest error of a fit in use, relative to the albedo that it leaves.
+/// Largest error of a fit in use, relative to the albedo after scaling.
 const ACCEPTED: f32 = 7e-4;
 
-/// Width of a lobe, rad, below which it is looked at for itself, and where: in widths from its end.
+/// Width of a lobe, rad, below which the end of its range is tested separately, and the positions of these tests in widths from the
+/// end.
 const NARROW: f32 = 0.05;
 const WIDTHS: [f32; 8] = [-16.0, -4.0, -1.6, -0.5, 0.5, 1.6, 4.0, 16.0];
 
-/// Factors on colours below it are not fitted, which are those of albedos above 1,000: the fit is of their distance from 1.
+/// Least factor on colours that is fitted, which is that of an albedo of 1,000: the fit is of the distance from 1.
 const LEAST: f32 = 1e-3;
 
-/// `cos(k pi / 16)`.
+/// Table of `cos(k pi / 16)`, for `k` from 0 to 8.
 const COS: [f32; 9] = [
     1.0,
     0.980_785_25,
@@ -39,14 +41,14 @@ const COS: [f32; 9] = [
     0.0,
 ];
 
-/// `cos(k pi / 16)` of any `k`.
+/// Returns `cos(k pi / 16)` for any `k`.
 const fn cosine(k: usize) -> f32 {
     let k = k % 32;
     let k = if k > 16 { 32 - k } else { k };
     if k > 8 { -COS[16 - k] } else { COS[k] }
 }
 
-/// The nodes of a piece in `[-1, 1]`, descending: roots of the Chebyshev polynomial of degree 8.
+/// Nodes of a piece in `[-1, 1]`, descending: the roots of the Chebyshev polynomial of degree 8.
 const ROOTS: [f32; NODES] = {
     let mut roots = [0.0; NODES];
     let mut i = 0;
@@ -57,7 +59,7 @@ const ROOTS: [f32; NODES] = {
     roots
 };
 
-/// `1 / albedo - 1`; for albedos below 1 its series about 1, which has no pole.
+/// Returns `1 / albedo - 1`; for albedos below 1 its series about 1, which has no pole.
 fn excess(albedo: f32) -> f32 {
     let e = albedo - 1.0;
     if e > 0.0 {
@@ -67,7 +69,7 @@ fn excess(albedo: f32) -> f32 {
     }
 }
 
-/// Chebyshev coefficients of the polynomial through the values at the roots.
+/// Computes the Chebyshev coefficients of the polynomial through the values at the roots.
 fn chebyshev(values: &[f32; NODES]) -> [f32; NODES] {
     let mut coefficients = [0.0; NODES];
     for (degree, coefficient) in coefficients.iter_mut().enumerate() {
@@ -80,7 +82,7 @@ fn chebyshev(values: &[f32; NODES]) -> [f32; NODES] {
     coefficients
 }
 
-/// Least value of a polynomial on `[-1, 1]`, at 17 points; NaN if one is.
+/// Returns the least value of a polynomial on `[-1, 1]`, at 17 points; NaN if a value is NaN.
 fn least(coefficients: &[f32; POWERS]) -> f32 {
     let mut least = f32::MAX;
     for k in 0..=16 {
@@ -91,13 +93,13 @@ fn least(coefficients: &[f32; POWERS]) -> f32 {
     least
 }
 
-/// The polynomials of one side of the normal plane, in one warp.
+/// Polynomials of one side of the normal plane, in one warp.
 struct Side {
     near: f32,
     coefficients: [[[f32; PIECES]; 3]; POWERS],
 }
 
-/// Albedos of the channels at eight inclinations, given by `x`.
+/// Computes the albedos of the channels at eight inclinations, given by `x`.
 #[inline(never)]
 fn albedos<B: Bell>(lobes: &HairLobes<f32>, sign: f32, x: f32x8) -> [f32x8; 3] {
     let x: Unfused = x.lanes();
@@ -114,7 +116,7 @@ fn albedos<B: Bell>(lobes: &HairLobes<f32>, sign: f32, x: f32x8) -> [f32x8; 3] {
 }
 
 impl Side {
-    /// The polynomials, if they are accurate enough.
+    /// Fits the polynomials, and returns them if they are accurate enough.
     fn of<B: Bell>(lobes: &HairLobes<f32>, sign: f32, near: f32) -> Option<Self> {
         let mut side = Self {
             near,
@@ -150,8 +152,8 @@ impl Side {
             .then_some(side)
     }
 
-    /// Largest error where the range of a narrow lobe's inclinations ends at its centre: the albedo changes within two widths there,
-    /// which may lie between nodes.
+    /// Returns the largest error where the range of a narrow lobe's inclinations ends at its centre. The albedo changes within two
+    /// widths there, possibly between nodes.
     fn error_at_end<B: Bell>(
         &self,
         lobes: &HairLobes<f32>,
@@ -183,7 +185,7 @@ impl Side {
         largest
     }
 
-    /// `1 / albedo - 1` of a channel by the fit.
+    /// Evaluates the fit of `1 / albedo - 1` of a channel.
     fn at(&self, channel: usize, x: f32) -> f32 {
         let v = f32::quotient((1.0 + self.near) * x, x + self.near);
         let (mut piece, mut t) = (0, 8.0 * v - 1.0);
@@ -196,18 +198,18 @@ impl Side {
             .fold(0.0, |sum, table| sum * t + table[channel][piece])
     }
 
-    /// The first warp that is accurate enough, if one is.
+    /// Fits the first warp that is accurate enough, if there is one.
     fn accurate<B: Bell>(lobes: &HairLobes<f32>, sign: f32) -> Option<Self> {
         NEAR.iter()
             .find_map(|near| Self::of::<B>(lobes, sign, *near))
     }
 }
 
-/// Bound on the error of a piece whose least value is known, relative to the factor on colours where that is below 1; infinite for
-/// factors that are not fitted.
+/// Returns a bound on the error of a piece whose least value is known, relative to the factor on colours where the factor is below 1.
+/// The bound is infinite for factors that are not fitted.
 ///
-/// Coefficients that are left out bound the error of the polynomial through the nodes; half of the last two once more stands
-/// for those beyond.
+/// Coefficients that are left out bound the error of the polynomial through the nodes; half of the last two, counted once more,
+/// stands for the coefficients beyond.
 fn relative_error(c: &[f32; NODES], least: f32) -> f32 {
     let error = c[5].abs() + 1.5 * (c[6].abs() + c[7].abs());
     let factor = 1.0 + least - error;
@@ -221,7 +223,7 @@ fn relative_error(c: &[f32; NODES], least: f32) -> f32 {
 }
 
 impl AlbedoFit<f32> {
-    /// The fit of a material's lobes.
+    /// Fits the albedo of a material's lobes.
     pub(in crate::hair) fn of<B: Bell>(lobes: &HairLobes<f32>) -> Self {
         let mut warp = Warp {
             near: [1.0; 2],

@@ -7,20 +7,20 @@ use super::prepared::shared4;
 use crate::simd::Lanes;
 use core::f32::consts::FRAC_PI_4;
 
-/// Cumulative integrals of an inclination, from the lower pole and from the upper one inwards.
+/// Cumulative integrals of an inclination, from the lower pole inwards and from the upper pole inwards.
 #[derive(Clone, Copy)]
 struct Inclination<P> {
     shift: P,
     inv_beta: P,
     origin: P,
-    /// Integral of M up to here, negative above: it ascends from either pole.
+    /// Integral of M up to the current point, negative above the normal plane, so that it ascends from either pole.
     integral: P,
     /// Integral of `M W` from the pole.
     area: P,
 }
 
 impl<P: Lanes> Inclination<P> {
-    /// At the poles.
+    /// Makes the integrals at the poles.
     #[inline(always)]
     fn at_poles<B: MatchedBell, L, const K: usize>(quarter_o: P, shift: P, inv_beta: P) -> Self
     where
@@ -42,7 +42,7 @@ impl<P: Lanes> Inclination<P> {
         }
     }
 
-    /// The integrals up to half an inclination, plus `quarter_o`, in either hemisphere.
+    /// Computes the integrals up to half an inclination, plus `quarter_o`, in either hemisphere.
     #[inline(always)]
     fn integral_to<B: MatchedBell, L, const K: usize>(&self, to: P) -> P
     where
@@ -51,7 +51,7 @@ impl<P: Lanes> Inclination<P> {
         B::integral(self.origin, (to + self.shift) * self.inv_beta).negate_above()
     }
 
-    /// Advances through a band. Returns the offset of its line.
+    /// Advances through a band, and returns the offset of its line.
     #[inline(always)]
     fn pass<B: MatchedBell, L, const K: usize>(&mut self, to: P, height: P, minus_slope: P) -> P
     where
@@ -64,13 +64,13 @@ impl<P: Lanes> Inclination<P> {
         offset
     }
 
-    /// The integral, less a slope times the area.
+    /// Returns the integral, less a slope times the area.
     #[inline(always)]
     fn offset(&self, minus_slope: P) -> P {
         minus_slope.mul_add(self.area, self.integral)
     }
 
-    /// Integral of `M W` up to a point in the middle band, and over the sphere.
+    /// Returns the integral of `M W` up to a point in the middle band, and over the sphere.
     #[inline(always)]
     fn join<L, const K: usize>(&self, height: P) -> [P; 2]
     where
@@ -84,7 +84,7 @@ impl<P: Lanes> Inclination<P> {
     }
 }
 
-/// Runs a body for every `j` below `n`, up to twelve, unrolled: its writes have constant indices.
+/// Runs a body for every `j` below `n`, up to twelve, unrolled so that its writes have constant indices.
 macro_rules! for_each {
     ($j:ident < $n:expr, $body:block) => { for_each!(@$j ($n) $body 0 1 2 3 4 5 6 7 8 9 10 11) };
     (@$j:ident $n:tt $body:block $($i:literal)*) => {
@@ -95,7 +95,8 @@ macro_rules! for_each {
     };
 }
 
-/// Cdf of the inclinations over the bands, as [`MatchedPrepared`] has it; arrays of three are R, TT and TRT.
+/// Cdf of the inclinations over the bands, as [`MatchedPrepared`](super::MatchedPrepared) has it; arrays of three hold R, TT and
+/// TRT.
 pub(super) struct BandCdf<L: Lanes, const N: usize> {
     pub(super) origin: [L; 3],
     pub(super) height: [L::Stored; N],
@@ -147,7 +148,7 @@ pub(super) fn integrate_bands<
     let (mut height, mut minus_slope) = (P::splat(0.0), P::splat(f32::MIN));
     for_each!(j < N / 2, {
         let band = &const { bands(N) }[j];
-        // Heights ascend inwards, though W may have its mode before the middle.
+        // Heights ascend inwards, although W may have its mode before the middle.
         let cos_sq: P = band.cos_sq_theta_d(theta_o);
         height = height.max(P::splat(band.cos_sq_theta_i()) / cos_sq);
         minus_slope = minus_slope.max(cos_sq * (-1.0 / band.cos_sq_theta_i()));

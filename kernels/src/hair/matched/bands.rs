@@ -3,24 +3,24 @@
 use super::hemispheres::Hemispheres;
 use crate::simd::Lanes;
 
-/// A band, and the one as far on the other side of the normal plane.
+/// Band of inclination, and the band as far on the other side of the normal plane.
 #[derive(Clone, Copy)]
 pub(super) struct Band {
-    /// Sine of its end towards the pole.
+    /// Sine of the inclination at the end towards the pole.
     pub(super) outer: f32,
-    /// Half of the inclination of its end towards the normal plane, rad.
+    /// Half of the inclination at the end towards the normal plane, rad.
     pub(super) half_inner: f32,
     /// Half of sine and cosine of the inclination where W is taken: at half of its area.
     half_sin: f32,
     half_cos: f32,
 }
 
-/// Most bands on one side of the one in the middle.
+/// Largest number of bands on one side of the band in the middle.
 const MOST: usize = 12;
 
-/// Ends of the bands, without the poles: sine of the inclination, and half of it. By the distance of the sine from 1 they shrink
-/// by a constant factor towards the pole, as W does there. Factor and first end minimise the variance over the grid of the
-/// efficiency figures; the distance of the last bounds how much of a lobe on the pole has a weight of its own.
+/// Ends of the bands, without the poles: sine of the inclination, and half of the inclination. By the distance of the sine from 1
+/// the bands shrink by a constant factor towards the pole, as W does there. Factor and first end minimise the variance over the grid
+/// of the efficiency figures. The distance of the last end bounds how much of a lobe on the pole has a weight of its own.
 const ENDS: [&[[f32; 2]]; 3] = [
     &[[0.935, 0.60412954], [0.598, 0.32050172]],
     &[
@@ -45,7 +45,8 @@ const ENDS: [&[[f32; 2]]; 3] = [
     ],
 ];
 
-/// The bands on one side of `all`, from the pole inwards, and then the one in the middle. Entries after it have no meaning.
+/// Computes the bands on one side of `all`, from the pole inwards, and then the band in the middle. Entries after it have no
+/// meaning.
 #[expect(clippy::cast_possible_truncation, reason = "rounding is the purpose")]
 pub(super) const fn bands(all: usize) -> [Band; MOST + 1] {
     let ends = match all {
@@ -65,7 +66,7 @@ pub(super) const fn bands(all: usize) -> [Band; MOST + 1] {
         let [inner, half_inner] = ends[j];
         let band = &mut side[j];
         band.half_inner = half_inner;
-        // In double precision: next to 1 the last digit of a sine is the fourth of its cosine.
+        // In double precision, because next to 1 the last digit of a sine is the fourth of its cosine.
         let sine = 0.5 * (band.outer as f64 + inner as f64);
         (band.half_sin, band.half_cos) = ((0.5 * sine) as f32, (0.5 * cosine_of(sine)) as f32);
         j += 1;
@@ -74,7 +75,7 @@ pub(super) const fn bands(all: usize) -> [Band; MOST + 1] {
     side
 }
 
-/// The cosine that goes with a sine below 1, by Newton's rule.
+/// Returns the cosine that belongs to a sine below 1, by Newton's rule.
 const fn cosine_of(sine: f64) -> f64 {
     let square = (1.0 - sine) * (1.0 + sine);
     let mut root = 1.0;
@@ -87,7 +88,7 @@ const fn cosine_of(sine: f64) -> f64 {
 }
 
 impl Band {
-    /// `cos^2 theta_d` in the middle of the band, below the normal plane and above it: W is `cos_sq_theta_i` over it.
+    /// Returns `cos^2 theta_d` in the middle of the band, below the normal plane and above it: W is `cos_sq_theta_i` divided by it.
     #[inline(always)]
     pub(super) fn cos_sq_theta_d<L: Lanes, P: Hemispheres<L, K>, const K: usize>(
         &self,
@@ -98,7 +99,7 @@ impl Band {
         sin.mul_add(sin, P::of(cos * cos))
     }
 
-    /// `cos^2 theta_i` in the middle of the band.
+    /// Returns `cos^2 theta_i` in the middle of the band.
     #[inline(always)]
     pub(super) const fn cos_sq_theta_i(&self) -> f32 {
         4.0 * self.half_cos * self.half_cos

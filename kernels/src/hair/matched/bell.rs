@@ -1,25 +1,25 @@
-//! Bells whose distribution on an interval is known in closed form: the extension point of the matched samplers.
+//! Bells whose distribution on an interval has a closed form: the extension point of the matched samplers.
 
 use crate::Gaussian;
 use crate::model::Bell;
 use crate::model::math::{normal_tail, normal_tail_inverse};
 use crate::simd::Lanes;
 
-/// A [`Bell`] that [`Matched`](crate::Matched) draws from: one whose integral is known, and its inverse.
+/// [`Bell`] that [`Matched`](crate::Matched) draws from, because its integral and the inverse of the integral are known.
 ///
-/// The integral up to a point counts from an origin that the bell chooses, so that differences keep their digits on
-/// intervals far from its centre. As for [`Bell`], mark all functions `#[inline(always)]`.
+/// The integral up to a point is measured from an origin that the bell chooses, so that differences keep their digits on intervals
+/// far from the centre. As for [`Bell`], mark all functions `#[inline(always)]`.
 pub trait MatchedBell: Bell {
-    /// The area that an integral of 1 stands for.
+    /// Area that an integral of 1 stands for, in widths.
     const UNIT: f32;
 
-    /// The origin for the interval `[lo, hi]`, in widths from the centre.
+    /// Returns the origin for the interval `[lo, hi]`, in widths from the centre.
     fn origin<L: Lanes>(lo: L, hi: L) -> L;
 
-    /// The integral up to `x` in the interval: it ascends with `x`.
+    /// Computes the integral from the origin up to `x` in the interval, which ascends with `x`.
     fn integral<L: Lanes>(origin: L, x: L) -> L;
 
-    /// [`Bell::area`] in closed form.
+    /// Computes [`Bell::area`] in closed form.
     #[doc(hidden)]
     #[inline(always)]
     fn closed_area<L: Lanes>(lo: L, hi: L) -> L {
@@ -27,19 +27,19 @@ pub trait MatchedBell: Bell {
         (Self::integral(origin, hi) - Self::integral(origin, lo)) * Self::UNIT
     }
 
-    /// The point whose integral is `sum`. Rounding may take it past an end.
+    /// Returns the point whose integral is `sum`. Rounding may move the point past an end of the interval.
     fn invert<L: Lanes>(origin: L, sum: L) -> L;
 }
 
-/// The integral is a probability. On intervals above the centre it is minus the probability above `x`.
+/// Bell whose integral is a probability. On intervals above the centre the integral is minus the probability above `x`.
 ///
 /// - Accuracy: the integral of an inverted point is within 2e-7 of the given one, and within 2.1e-4 of the probability beyond
 ///   it (5e-5 where that is at least `2^-30`).
 impl MatchedBell for Gaussian {
-    /// `sqrt(2 pi)`.
+    /// Area under a Gaussian of deviation 1: `sqrt(2 pi)`.
     const UNIT: f32 = 2.506_628_3;
 
-    /// Origin of probabilities above a half: 1, or 0 on an interval above the centre.
+    /// Returns the origin of probabilities above a half: 1, or 0 on an interval above the centre.
     #[inline(always)]
     fn origin<L: Lanes>(lo: L, _hi: L) -> L {
         L::keep(lo.lt(L::splat(0.0)), L::splat(1.0))

@@ -5,25 +5,25 @@ use crate::simd::pair::Pair;
 use crate::simd::portable::Unfused;
 use wide::f32x8;
 
-/// Numbers of lobes below the normal plane and above it: `K` of these are those of R, TT and TRT.
+/// Numbers of lobes below the normal plane and above it; `K` such numbers hold R, TT and TRT.
 pub(super) trait Hemispheres<L, const K: usize>: Lanes {
     /// Repeats a number for all lobes, in both hemispheres.
     fn of(x: L) -> Self;
-    /// One number each for R, TT and TRT, the same in both hemispheres.
+    /// Loads one number each for R, TT and TRT, the same in both hemispheres.
     fn of_lobes(x: [L; 3]) -> [Self; K];
-    /// `-x` below, `x` above.
+    /// Returns `-x` below the normal plane and `x` above.
     fn outwards(x: f32) -> Self;
-    /// As it is below, negative above.
+    /// Negates the number above the normal plane, and keeps it below.
     fn negate_above(self) -> Self;
-    /// The hemispheres exchanged.
+    /// Exchanges the hemispheres.
     fn swapped(self) -> Self;
-    /// Below and above, of what is the same for all lobes.
+    /// Returns the numbers below and above, for a quantity that is the same for all lobes.
     fn apart(self) -> [L; 2];
-    /// R, TT and TRT below the normal plane, and above it.
+    /// Returns the numbers of R, TT and TRT below the normal plane, and above it.
     fn lobes_apart(x: [Self; K]) -> [[L; 3]; 2];
 }
 
-/// Packets: a lobe at a time.
+/// Packets, which compute one lobe at a time.
 impl<L: Lanes> Hemispheres<L, 3> for Pair<L> {
     #[inline(always)]
     fn of(x: L) -> Self {
@@ -55,8 +55,8 @@ impl<L: Lanes> Hemispheres<L, 3> for Pair<L> {
     }
 }
 
-/// One shading point: lanes 0 to 2 are the lobes below, 4 to 6 those above. One lane would do each after the other, and gives
-/// the same bits: these lanes do not fuse either.
+/// One shading point: lanes 0 to 2 are the lobes below, and lanes 4 to 6 the lobes above. One lane would compute each after the
+/// other and give the same bits, because these lanes do not fuse either.
 impl Hemispheres<f32, 1> for Unfused {
     #[inline(always)]
     fn of(x: f32) -> Self {

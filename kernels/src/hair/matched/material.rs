@@ -8,32 +8,33 @@ use crate::params::HairDesc;
 use crate::simd::{Broadcast, Lanes};
 use core::f32::consts::PI;
 
-/// Least share of the largest intensity, for the sampler, of a lobe that has any: alone, it is still drawn.
+/// Least share of the largest intensity, in the sampler, for a lobe that has any intensity, so that it is still drawn when it is
+/// alone.
 const LEAST_IMPORTANCE: f64 = 1e-15;
 
 crate::simd::lane_struct! {
-    /// The constants of a material with a matched sampler.
+    /// Constants of a material with a matched sampler.
     ///
-    /// Arrays of two are TT and the glints, of four in the order of [`Lobe`](crate::Lobe).
+    /// Arrays of two hold TT and the glints; arrays of four are in the order of [`Lobe`](crate::Lobe).
     pub struct MatchedMaterial {
-        /// Its lobes.
+        /// Lobes of the material.
         pub(in crate::hair) lobes: HairLobes<C>,
-        /// Intensity of each lobe, the mean of its RGB, to the scale of the largest.
+        /// Intensity of each lobe, the mean of its RGB, to the scale of the largest intensity.
         pub(in crate::hair) importance: [C; 4],
-        /// Intensity of each lobe in each channel, to the same scale: the channels of R first.
+        /// Intensity of each lobe in each channel, to the same scale, with the channels of R first.
         pub(in crate::hair) intensity: [C; 12],
         /// Integral of a lobe without its colour, per unit of its inclination's integral.
         pub(in crate::hair) extent: [C; 4],
         /// Integral of the azimuth's bell over one side.
         pub(in crate::hair) azimuth_mass: [C; 2],
-        /// Its integral up to where the side begins.
+        /// Integral of the azimuth's bell up to the start of the side.
         pub(in crate::hair) azimuth_from: [C; 2],
-        /// The origin of both.
+        /// Origin of both integrals of the azimuth.
         pub(in crate::hair) azimuth_origin: [C; 2],
     }
 }
 
-/// Integral of each lobe without its colour, per unit of its inclination's integral.
+/// Computes the integral of each lobe without its colour, per unit of its inclination's integral.
 #[inline(always)]
 pub(super) fn extent<B: MatchedBell, L: Lanes, C: Broadcast<L>>(
     hair: &HairLobes<C>,
@@ -54,7 +55,7 @@ pub(super) fn extent<B: MatchedBell, L: Lanes, C: Broadcast<L>>(
 }
 
 impl<L: Lanes<Stored = L> + Broadcast<L>> MatchedMaterial<L> {
-    /// The material of a description, whose ranges are those of checked parameters.
+    /// Computes the material of a description, whose ranges are those of checked parameters.
     #[inline]
     #[must_use]
     pub(super) fn of<B: MatchedBell, W: Precision<Lane = L>>(bell: B, d: &HairDesc<L>) -> Self {
@@ -71,7 +72,7 @@ impl<L: Lanes<Stored = L> + Broadcast<L>> MatchedMaterial<L> {
         let from_to =
             |i: usize| [ranges[i].0, ranges[i].1].map(|x| B::integral(azimuth_origin[i], x));
         let [tt, glint] = [from_to(0), from_to(1)];
-        // Integrals ascend but for their rounding.
+        // Integrals ascend except for their rounding.
         let azimuth_mass = [tt, glint].map(|[from, to]| zero.max(to - from));
         let intensity = intensity::<W>(d);
         Self {
@@ -86,9 +87,9 @@ impl<L: Lanes<Stored = L> + Broadcast<L>> MatchedMaterial<L> {
     }
 }
 
-/// Intensity of each lobe in each channel, to the scale of the largest mean.
+/// Computes the intensity of each lobe in each channel, to the scale of the largest mean.
 ///
-/// The product of two of the largest legal intensities overflows a float.
+/// Scaled, because the product of two of the largest legal intensities overflows a float.
 #[inline]
 fn intensity<W: Precision>(d: &HairDesc<W::Lane>) -> [[W::Lane; 3]; 4] {
     let (c, zero) = (W::constant, W::constant(0.0));

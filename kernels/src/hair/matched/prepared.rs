@@ -10,32 +10,34 @@ use crate::hair::{HairView, prepare_view, selection};
 use crate::model::lobe::times;
 use crate::simd::{Broadcast, Lanes, Spread, Vec3x, lanes3, lanes4, store3, store4};
 
-/// Energies and areas below this count as 0: next to denormals their reciprocals would have no digits. Energies are to the scale
-/// of the brightest lobe and of the largest area.
+/// Least energy and area: smaller ones count as 0, because close to denormals their reciprocals would have no digits. Energies are
+/// to the scale of the brightest lobe and of the largest area.
 const LEAST_ENERGY: f32 = 1e-36;
 
-/// Least area above 0: a Gaussian is cut at `2^-115` of its peak, and W is at least .004 in a band. Its reciprocal is a float.
+/// Least area above 0: a Gaussian is cut at `2^-115` of its peak, and W is at least .004 in a band. Its reciprocal is a finite
+/// float.
 const LEAST_AREA: f32 = 3e-39;
 
-/// A channel below this share of the largest is ignored in the choice of lobes: the square of its reciprocal is a float.
+/// Least share of the largest channel: a smaller channel is ignored in the choice of lobes, so that the square of the reciprocal is
+/// a finite float.
 const LEAST_CHANNEL: f32 = 1e-18;
 
 crate::simd::lane_struct! {
-    /// The constants of a shading point with a matched sampler of `N` bands.
+    /// Constants of a shading point with a matched sampler of `N` bands.
     ///
-    /// Arrays of four are in the order of [`Lobe`], of two TT and the glints, of `N` from the lower
-    /// pole to the upper.
+    /// Arrays of four are in the order of [`Lobe`](crate::Lobe), arrays of two hold TT and the glints, and arrays of `N` run from
+    /// the lower pole to the upper.
     pub struct MatchedPrepared<const N: usize> {
-        /// The lobes as seen from `wo`.
+        /// Lobes as viewed from `wo`.
         pub(in crate::hair) view: HairView<C>,
-        /// Origin of the integrals of each inclination.
+        /// Origin of the integrals of each lobe's inclination.
         pub(in crate::hair) origin: [C; 4],
-        /// The constant for W in each band; ascends to the band in the middle.
+        /// Constant for W in each band, which ascends to the band in the middle.
         pub(in crate::hair) height: [C; N],
-        /// One over it.
+        /// Reciprocal of `height`.
         pub(in crate::hair) slope: [C; N],
-        /// In each band the integral of a lobe's M exceeds `slope` times that of `M W` from the
-        /// nearer pole by this much. Above the middle it is the negative integral.
+        /// Excess, in each band, of the integral of a lobe's M over `slope` times the integral of `M W` from the nearer pole. Above
+        /// the middle the integral of M is taken negative.
         pub(in crate::hair) offset: [[C; 4]; N],
         /// Offsets in the middle band, with the integral of `M W` from the upper pole.
         pub(in crate::hair) offset_above: [C; 4],
@@ -43,9 +45,9 @@ crate::simd::lane_struct! {
         pub(in crate::hair) below: [C; 4],
         /// Integral of `M W` over the sphere.
         pub(in crate::hair) area: [C; 4],
-        /// Factor on `M N` of each lobe in the mixture density, but for W.
+        /// Factor on `M N` of each lobe in the mixture density, without W.
         pub(in crate::hair) weight: [C; 4],
-        /// Factor on areas that makes the largest 1.
+        /// Factor on areas that makes the largest area 1.
         pub(in crate::hair) scale: C,
         /// Probability of choosing each lobe.
         pub(in crate::hair) selection: [C; 4],
@@ -53,14 +55,14 @@ crate::simd::lane_struct! {
         pub(in crate::hair) bounds: [C; 3],
         /// Integral of the azimuth's bell over one side.
         pub(in crate::hair) azimuth_mass: [C; 2],
-        /// Its integral up to where the side begins.
+        /// Integral of the azimuth's bell up to the start of the side.
         pub(in crate::hair) azimuth_from: [C; 2],
-        /// The origin of both.
+        /// Origin of both integrals of the azimuth.
         pub(in crate::hair) azimuth_origin: [C; 2],
     }
 }
 
-/// The shading point of a material seen from `wo`.
+/// Computes the shading point of a material viewed from `wo`.
 #[inline(always)]
 pub(super) fn prepare<B, L, C, P, const K: usize, const N: usize, const BY_CHANNEL: bool>(
     m: &MatchedMaterial<C>,
@@ -134,7 +136,7 @@ where
     }
 }
 
-/// Sampling weights of lobes of these sizes: the root of the sum of the squared shares of the channels.
+/// Computes sampling weights of lobes of these sizes: the root of the sum of the squared shares of the channels.
 #[inline(always)]
 fn by_channel<L: Lanes, C: Broadcast<L>>(size: [L; 4], intensity: &[C; 12]) -> [L; 4] {
     let zero = L::splat(0.0);
@@ -167,14 +169,14 @@ fn by_channel<L: Lanes, C: Broadcast<L>>(size: [L; 4], intensity: &[C; 12]) -> [
     [sum[0].sqrt(), sum[1].sqrt(), sum[2].sqrt(), sum[3].sqrt()]
 }
 
-/// R, TT, TRT, and for the glints TRT again.
+/// Stores the numbers of R, TT and TRT, and for the glints that of TRT again.
 #[inline(always)]
 pub(super) fn shared4<L: Lanes>([r, tt, trt]: [L; 3]) -> [L::Stored; 4] {
     store4([r, tt, trt, trt])
 }
 
 impl<C, const N: usize> MatchedPrepared<C, N> {
-    /// W in the band of an inclination.
+    /// Returns the constant for W in the band of an inclination.
     #[inline(always)]
     pub(super) fn height<L: Lanes>(&self, sin_theta_i: L) -> L
     where
@@ -202,7 +204,8 @@ impl<C, const N: usize> MatchedPrepared<C, N> {
         height
     }
 
-    /// Factors on `M N W` of a lobe drawn alone, to be applied one after the other: their product may be too large.
+    /// Computes the factors on `M N W` of a lobe drawn alone. Apply them one after the other, because their product may be too
+    /// large.
     #[inline(always)]
     pub(super) fn lone_density<B: MatchedBell, L: Lanes>(&self) -> [[L; 4]; 2]
     where
@@ -231,7 +234,7 @@ impl<C, const N: usize> MatchedPrepared<C, N> {
 }
 
 impl<C: Lanes, const N: usize> MatchedPrepared<C, N> {
-    /// The shading point with only some of its lobes.
+    /// Returns the shading point with only some of its lobes.
     #[inline(always)]
     pub(super) fn restrict(&self, lobes: LobeMask) -> Self {
         let factor = lobes.factors();

@@ -1,16 +1,16 @@
-//! A direction from three uniform numbers.
+//! Draws a direction from three uniform numbers.
 
 use super::{MatchedBell, MatchedPrepared};
 use crate::hair::{Angles, FoldedXi, direction_from_angles};
 use crate::simd::pair::Pair;
 use crate::simd::{Broadcast, Choice, Lanes, Vec3x, lanes3};
 
-/// A quarter of the step between uniform numbers of 24 bits: the share of an integral that is left out at its ends, so that
-/// where they have digits for it, on narrow bells and in far tails, rounding takes no sample past them, to a pole or to where a
-/// Gaussian has no density left. A wide bell may reach the pole; there is no sample of it there.
+/// Share of an integral that is left out at its ends: a quarter of the step between uniform numbers of 24 bits. On narrow bells and
+/// in far tails, where the ends have digits for it, rounding then moves no sample past them, to a pole or to a place where a
+/// Gaussian has no density left. A wide bell may reach the pole, where it has no sample.
 const LEAST_SHARE: f32 = f32::EPSILON / 8.0;
 
-/// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its angles.
+/// Draws a direction for `xi = [lobe, theta, phi]`. Returns the direction, its lobe, and its angles.
 #[inline(always)]
 pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     prepared: &MatchedPrepared<C, N>,
@@ -44,7 +44,7 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
         whole.mul_add(c(-LEAST_SHARE), first),
         whole.mul_sub(c(LEAST_SHARE), minus_last),
     );
-    // The second operand wins over NaN.
+    // `max` and `min` return their second operand for NaN.
     let integral = L::select(lower, integral, -integral).max(least).min(most);
 
     L::stage("integral of the lobe's azimuth at xi.z");
@@ -68,8 +68,8 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
         C::look_up_three(&hair.beta, choice),
         C::look_up_three(&view.shift, choice),
     );
-    // Far below 8. NaN if any number is, as the second operand wins: the sample has no inclination
-    // then, and no density. Rounding may take another past the pole, where it has none either.
+    // Far below 8. NaN if any number is, because `min` returns its second operand for NaN: the sample then has no inclination and
+    // no density. Rounding may take another sample past the pole, where it has no density either.
     let from_quarter = from_quarter.min(xi[0] + 8.0 + xi[1] + xi[2]);
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
@@ -77,7 +77,7 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     (wi, choice, angles)
 }
 
-/// The line of band `j` of a side at an area from its pole.
+/// Evaluates the line of band `j` of a side at an area from its pole.
 #[inline(always)]
 fn line<L: Lanes, C: Broadcast<L>, const N: usize>(
     prepared: &MatchedPrepared<C, N>,

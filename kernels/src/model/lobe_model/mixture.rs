@@ -1,4 +1,4 @@
-//! Probabilities of the lobes.
+//! Probabilities of the lobes, and the choice of a lobe by them.
 
 use crate::model::lobe::times;
 use crate::simd::{Lanes, store3, store4};
@@ -10,10 +10,9 @@ crate::simd::lane_struct! {
         pub(super) selection: [C; 4],
         /// Start of the next lobe in `xi[0]`.
         pub(super) bounds: [C; 3],
-        /// Start of each lobe in `xi[0]`, from 0 and from 1: the sums of the lobes before it, and of those from it on,
-        /// negative.
+        /// Start of each lobe in `xi[0]`, measured from 0: the sum of the probabilities of the lobes before it.
         pub(super) start: [C; 4],
-        /// As `start`, from 1.
+        /// Start of each lobe in `xi[0]`, measured from 1: the negative sum of the probabilities from this lobe on.
         pub(super) start_less_one: [C; 4],
         /// 1 for a lobe that scatters, 0 for one that does not.
         pub(super) kept: [C; 4],
@@ -21,10 +20,10 @@ crate::simd::lane_struct! {
 }
 
 impl<C: Lanes> Mixture<C> {
-    /// The mixture of lobes of these weights, those of `kept` alone.
+    /// Makes the mixture of lobes with these weights, restricted to the lobes of `kept`.
     ///
-    /// The last lobe with any weight reaches to 2: a rounded sum never lets `xi[0]` fall through to a lobe without. Without
-    /// any weight all probabilities are 0.
+    /// The last lobe with a positive weight reaches to 2, so that a rounded sum never selects a lobe without weight. If no lobe has
+    /// any weight, all probabilities are 0.
     #[inline(always)]
     pub(super) fn new(weights: [C; 4], kept: [C; 4]) -> Self {
         let c = C::splat;
@@ -58,7 +57,7 @@ impl<C: Lanes> Mixture<C> {
         }
     }
 
-    /// The mixture in its storage form.
+    /// Returns the mixture in its storage form.
     #[inline(always)]
     pub(super) fn store(self) -> Mixture<C::Stored> {
         Mixture {

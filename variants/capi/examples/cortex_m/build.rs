@@ -1,4 +1,4 @@
-//! Places code and data where the board has memory.
+//! Passes the linker script that places code and data where the board has memory.
 
 fn main() {
     println!("cargo::rerun-if-changed=memory.ld");

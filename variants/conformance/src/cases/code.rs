@@ -1,11 +1,11 @@
-//! Cases as code.
+//! Conversion of cases to code.
 
 use super::{Case, Row};
 use crate::erased::{Choice, Direction};
 use core::fmt::Write;
 use hairis::{Hit, Lobe, LobeMask};
 
-/// A number.
+/// Returns a number as code that has its exact bits.
 fn number(x: f32) -> String {
     if x.is_finite() {
         format!("{x:?}")
@@ -52,12 +52,11 @@ fn row(row: &Row<Choice>) -> String {
     format!("Row {{\n        {},\n    }}", fields.join(",\n        "))
 }
 
-/// A block whose value is the outcome of the property for the case; `subject` is the subject of the
-/// test.
+/// Writes a block whose value is the outcome of the property for the case; `subject` is the subject of the test.
 pub(super) fn write(case: &Case<Choice>, path: &str) -> String {
     let rows = case.rows.each_ref().map(row);
     let count = |row: &String| rows.iter().filter(|other| *other == row).count();
-    // The first of those that are there most often.
+    // The first of the most frequent rows.
     let (common, _) = rows.iter().fold((&rows[0], 0), |best, row| {
         if count(row) > best.1 {
             (row, count(row))

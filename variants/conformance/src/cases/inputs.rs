@@ -1,4 +1,4 @@
-//! Strategies of the inputs of properties.
+//! Strategies for the inputs of properties.
 
 use crate::erased::{Choice, Direction};
 use crate::probe::{LAST, direction, hits, masks, narrow};
@@ -9,36 +9,35 @@ use proptest::array::{uniform3, uniform8};
 use proptest::prelude::*;
 use proptest::sample::select;
 
-/// Materials of a subject: those with a name, and any.
+/// Strategy for the materials of a subject: the named ones, and any legal one.
 pub(crate) type Choices = BoxedStrategy<Choice>;
 
-/// A direction, or the sample of these numbers where it is kept.
+/// Direction itself, or the direction sampled with these numbers if that sample is kept.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Aim {
     At(Direction),
     Lobe([f32; 3], Direction),
 }
 
-/// Rows before their directions are sampled, lobes, and order of lanes.
+/// Rows whose directions are not sampled yet, lobes, and order of lanes.
 pub(crate) type Drawn = ([(Choice, Hit, Aim, [f32; 3]); 8], LobeMask, [usize; 8]);
 
-/// Kinds of inputs.
+/// Kinds of inputs, from everyday ones to non-finite ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Inputs {
     /// Unit directions, uniform in their angles, and numbers in [0, 1).
     Everyday,
     /// Everyday directions, and numbers at the ends of their range more often than chance.
     Ends,
-    /// Unit directions and numbers, with the axes, grazing hits and the ends of every range more
-    /// often than chance.
+    /// Unit directions and numbers, with the axes, grazing hits and the ends of every range more often than chance.
     Awkward,
-    /// Finite vectors and numbers that arithmetic trips over.
+    /// Finite vectors and numbers at which arithmetic tends to fail.
     Finite,
-    /// Vectors and numbers of which one component at least is NaN or infinite.
+    /// Vectors and numbers with at least one component that is NaN or infinite.
     NotNumbers,
 }
 
-/// Components that arithmetic trips over.
+/// Components at which arithmetic tends to fail.
 const COMPONENTS: [f32; 22] = [
     0.0,
     -0.0,
@@ -64,8 +63,7 @@ const COMPONENTS: [f32; 22] = [
     f32::MAX,
 ];
 
-/// Uniform numbers at the ends and the middle of their range; the last is beyond it, and what
-/// rounding makes of others.
+/// Uniform numbers at the ends and the middle of their range. The last number is beyond the range, but rounding may produce it.
 const NUMBERS: [f32; 12] = [
     0.0,
     1e-45,
@@ -81,17 +79,17 @@ const NUMBERS: [f32; 12] = [
     1.0,
 ];
 
-/// A multiple of `2^-24` in `[0, 1)`.
+/// Draws a multiple of `2^-24` in `[0, 1)`.
 fn uniform() -> impl Strategy<Value = f32> {
     (0..1_u32 << 24).prop_map(|n| n as f32 / 16_777_216.0)
 }
 
-/// Any direction, uniform in its angles: as many next to the axis as elsewhere.
+/// Draws any direction, uniform in its angles: as many next to the axis as elsewhere.
 fn any_direction() -> impl Strategy<Value = Direction> {
     (-FRAC_PI_2..FRAC_PI_2, -PI..PI).prop_map(|(theta, phi)| direction(theta, phi))
 }
 
-/// A direction next to the axis.
+/// Draws a direction next to the axis.
 fn grazing() -> impl Strategy<Value = Direction> {
     let off = select(vec![
         0.0, 1e-20, 1e-12, 1e-7, 0.99e-5, 1.01e-5, 1e-4, 1e-2_f32,
@@ -108,7 +106,7 @@ fn grazing() -> impl Strategy<Value = Direction> {
     })
 }
 
-/// A direction along an axis, or in a plane of two.
+/// Draws a direction along an axis, or in a plane of two.
 fn axes() -> impl Strategy<Value = Direction> {
     let vectors = [
         [0.0, -1.0, 0.0],
@@ -122,7 +120,7 @@ fn axes() -> impl Strategy<Value = Direction> {
     select(vectors.map(Direction::from_array).to_vec())
 }
 
-/// A finite vector of any length.
+/// Draws a finite vector of any length.
 fn vector() -> impl Strategy<Value = Direction> {
     let component = || select(COMPONENTS.to_vec());
     let around = select(vec![0.0, 0.5 * PI, PI]);
@@ -135,7 +133,7 @@ fn vector() -> impl Strategy<Value = Direction> {
     ]
 }
 
-/// Puts values in place of one or more of three numbers.
+/// Replaces one or more of three numbers by other values.
 fn spoilt(
     sound: impl Strategy<Value = [f32; 3]> + 'static,
     values: &[f32],
@@ -196,7 +194,7 @@ impl Inputs {
         }
     }
 
-    /// Half of the unit directions lie where the lobes are.
+    /// Aims half of the unit directions at the lobes.
     fn aim(self) -> BoxedStrategy<Aim> {
         let anywhere = self.direction().prop_map(Aim::At);
         match self {
@@ -208,7 +206,7 @@ impl Inputs {
         }
     }
 
-    /// Cases with these materials.
+    /// Draws cases with these materials.
     pub(crate) fn cases(self, choices: Choices) -> impl Strategy<Value = Drawn> {
         let hit = (self.direction(), self.offset()).prop_map(|(wo, h)| Hit { wo: wo.into(), h });
         let row = (choices, hit, self.aim(), self.numbers());

@@ -1,11 +1,10 @@
-//! Seeds of cases that have failed, kept in the tree of the package under test.
+//! Seeds of cases that have failed, which are kept in the tree of the package under test.
 
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The regressions of one test: lines `cc SEED TEST PROPERTY` of a file, each below the code of its
-/// smallest case.
+/// Regressions of one test: lines `cc SEED TEST PROPERTY` of a file, each below the code of its smallest case.
 #[derive(Clone, Debug)]
 pub struct Regressions {
     file: PathBuf,
@@ -18,11 +17,11 @@ impl Regressions {
         Self { file, test }
     }
 
-    /// The seeds of a property.
+    /// Returns the seeds of a property.
     ///
     /// # Panics
     ///
-    /// If a line of the file is not a seed.
+    /// Panics if a line of the file is not a seed.
     pub(super) fn seeds(&self, property: &str) -> Vec<u64> {
         let text = fs::read_to_string(&self.file).unwrap_or_default();
         let lines = text.lines().filter_map(|line| line.strip_prefix("cc "));
@@ -40,8 +39,7 @@ impl Regressions {
         lines.filter_map(seed).collect()
     }
 
-    /// Adds the seed of a failure, unless the file has it; a file that cannot be written stays as
-    /// it is.
+    /// Adds the seed of a failure, unless the file already has it. A file that cannot be written stays as it is.
     pub(super) fn add(&self, property: &str, seed: u64, code: &str) {
         if self.seeds(property).contains(&seed) {
             return;

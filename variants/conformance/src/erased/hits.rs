@@ -1,4 +1,4 @@
-//! Slices of hits of any model.
+//! Slices of hits of any model, without its types.
 
 use super::{MaterialSet, Set, Which};
 use crate::subject::Subject;
@@ -6,23 +6,23 @@ use hairis::Material;
 use hairis::columns::{EvalColumns, HitColumns, HitsError, MaterialTable, SampleColumns};
 use hairis::simd::Level;
 
-/// The columns of a call that are asked for.
+/// Requested columns of a call.
 #[derive(Debug)]
 pub(crate) enum Columns<'a> {
     /// Columns of an evaluation.
     Eval(EvalColumns<'a>),
     /// Columns of a sample.
     Sample(SampleColumns<'a>),
-    /// Both in one call.
+    /// Columns of an evaluation and a sample in one call.
     Both(EvalColumns<'a>, SampleColumns<'a>),
 }
 
-/// A [`Subject`] whose slices of hits are tested: pass a reference to any subject.
+/// [`Subject`] whose slices of hits are tested. Every subject implements it, so pass a reference to any subject.
 ///
-/// A trait apart from [`ErasedSubject`](super::ErasedSubject), so that slices of hits are compiled for subjects that are tested on
-/// them alone.
+/// This trait is separate from [`ErasedSubject`](super::ErasedSubject), so that slices of hits are compiled only for subjects that are
+/// tested on them.
 pub trait HitsSubject {
-    /// Everyday materials and extremes.
+    /// Returns everyday materials and extremes.
     #[doc(hidden)]
     fn hits(&self) -> Box<dyn HitsSet + '_>;
 }
@@ -44,13 +44,13 @@ pub struct HitsCall<'a> {
     pub(crate) out: Columns<'a>,
 }
 
-/// Outcome of a call: an error if lengths differ, or an index is beyond the table.
+/// Outcome of a call: an error if lengths differ, or if an index is beyond the table.
 type HitsResult = Result<(), HitsError>;
 
-/// Materials of one model, and its slices of hits.
+/// Materials of one model, with calls on slices of hits.
 pub trait HitsSet: MaterialSet {
     fn call(&self, of: HitMaterials<'_>, level: Level, call: HitsCall<'_>) -> HitsResult;
-    /// Evaluates hits of one material each on the level that is found.
+    /// Evaluates hits of one material each on the detected level.
     fn eval_each(
         &self,
         index: &[u32],
@@ -60,12 +60,12 @@ pub trait HitsSet: MaterialSet {
     ) -> HitsResult;
 }
 
-/// Materials of the hits.
+/// Assignment of materials to hits.
 #[derive(Clone, Copy, Debug)]
 pub enum HitMaterials<'a> {
-    /// One, by its index.
+    /// One material for all hits, by its index.
     Shared(usize),
-    /// One per hit.
+    /// One material per hit, by index.
     PerHit(&'a [u32]),
 }
 

@@ -1,4 +1,4 @@
-//! The directional albedo against quadrature of the reference, and the scale that keeps it at most 1.
+//! Tests of the directional albedo against quadrature of the reference, and of the scale that keeps it at most 1.
 
 use super::Tested;
 use super::handles::Material;
@@ -12,7 +12,7 @@ use hairis::simd::Level;
 use hairis::{HairParams, Lobe, PerLobe};
 use hairis_reference::Reference;
 
-/// Integral of each lobe's value times the cosine: a product of two line integrals, as the lobes are products.
+/// Integrates each lobe's value times the cosine, as a product of two line integrals, because the lobes are products.
 fn integrals(reference: &dyn Reference<f64>, point: &Point) -> PerLobe<f64> {
     let p = &point.p;
     let l = |lobe: Lobe| lobe.index().min(2);
@@ -26,7 +26,7 @@ fn integrals(reference: &dyn Reference<f64>, point: &Point) -> PerLobe<f64> {
         let centre = 2.0 * p.alpha[l(lobe)] - point.theta_o;
         let theta_0 = centre.clamp(-1.4, 1.4);
         let phi_0 = [0.0, PI, 0.0, p.phi_g][lobe.index()];
-        // Towards the pole opposite to wo the cosine of theta_d has a scale of its own.
+        // Towards the pole opposite to wo, the cosine of theta_d has a scale of its own.
         let to_pole = FRAC_PI_2 - point.theta_o.abs();
         let bells = [
             (centre, 2.0 * p.beta[l(lobe)]),
@@ -81,7 +81,7 @@ pub fn albedo_is_the_integral(tested: &Tested) {
     worst.check("albedo against quadrature", tested.rows.albedo);
 }
 
-/// Materials of any widths and shifts, and those where quadrature and scans have gone wrong.
+/// Returns materials of any widths and shifts, and materials for which quadrature or scans have failed before.
 fn any_widths() -> Vec<HairParams> {
     let mut draws = Draws(33);
     let default = *HairParams::bright().desc();
@@ -127,7 +127,7 @@ fn any_widths() -> Vec<HairParams> {
         .collect()
 }
 
-/// Distances of `wo` from a pole, ever closer and on it, and the side of the pole.
+/// Returns distances of `wo` from a pole, closer and closer and on it, with the side of the pole.
 fn any_inclinations() -> impl Iterator<Item = (f64, f64)> {
     let near = (0..24).map(|i| 0.5 * f64::exp(-0.62 * f64::from(i)));
     near.chain((0..12).map(|i| FRAC_PI_2 - 0.09 * f64::from(i)))
@@ -135,14 +135,14 @@ fn any_inclinations() -> impl Iterator<Item = (f64, f64)> {
         .flat_map(|off| [(off, 1.0), (off, -1.0)])
 }
 
-/// The direction so far from a pole, rounded, and its inclination.
+/// Returns the rounded direction at this distance from a pole, and its inclination.
 fn off_pole((off, side): (f64, f64)) -> (Vec3, f64) {
     let wo = Vec3::new(narrow(side * off.cos()), narrow(off.sin()), 0.0);
     (wo, f64::from(wo.x).atan2(f64::from(wo.y)))
 }
 
-/// The albedo of each lobe but for its colour, from the formulas of its two factors: as exact for lobes of any width, seen from
-/// any inclination.
+/// Returns the albedo of each lobe without its colour, from the formulas of its two factors. It is equally exact for lobes of any width,
+/// seen from any inclination.
 fn exact(tested: &Tested, p: &HairDesc<f64>, theta_o: f64) -> PerLobe<f64> {
     let to_pole = FRAC_PI_2 - theta_o.abs();
     let inclination = [0, 1, 2].map(|l| {
@@ -220,7 +220,7 @@ pub fn conserving_hair_returns_at_most_what_it_receives(tested: &Tested) {
             for at in any_inclinations().filter(|(off, _)| *off > 1e-5) {
                 let (wo, theta_o) = off_pole(at);
                 let PerLobe([r, tt, trt, glint]) = exact(tested, &p, theta_o);
-                // By the material, and by an integral at the hit.
+                // Sums computed by the material, and by an integral at the hit.
                 let fitted = sums(model.conserving_albedo(&params, wo.into()));
                 let integrated = sums(raw.prepare(wo).conserving().albedo());
                 for (c, got) in (0..3).cycle().zip(fitted.into_iter().chain(integrated)) {
@@ -281,7 +281,7 @@ pub fn max_albedo_bounds_lobes_of_any_width(tested: &Tested) {
     scaled.check("max_albedo over the largest seen", 1.02);
 }
 
-/// The largest albedo on a scan of `steps` inclinations.
+/// Returns the largest albedo on a scan of `steps` inclinations.
 fn scanned(material: &Material<'_>, steps: u32) -> f32 {
     let mut most = 0.0_f32;
     for i in 0..=steps {

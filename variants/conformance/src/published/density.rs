@@ -1,4 +1,4 @@
-//! Each lobe's density integrates to 1, and so does the mixture: quadrature over the kernels' own numbers.
+//! Tests that each lobe's density integrates to 1, and so does the mixture, by quadrature over the kernels' own numbers.
 
 use super::Tested;
 use super::quadrature::{integrate, panels};
@@ -8,7 +8,8 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::{HairParams, Lobe, LobeMask};
 use hairis_reference::{MatchedReference, Reference};
 
-/// Integral over the sphere of the density of each lobe alone, of the others but for rounding a product of two.
+/// Integrates the density of each lobe alone over the sphere. Except for rounding, the density is a product of two factors, so that two
+/// line integrals suffice.
 fn integrals(tested: &Tested, bands: usize, params: &HairParams, theta_o: f64) -> [f64; 4] {
     let wo = direction(theta_o, 0.4);
     let p = parameters(params, 1.0);
@@ -37,7 +38,7 @@ fn integrals(tested: &Tested, bands: usize, params: &HairParams, theta_o: f64) -
         if largest == 0.0 {
             return f64::NAN;
         }
-        // Directions closer to the axis are discarded: their part of the density.
+        // Directions closer to the axis are discarded; this is their part of the density.
         let caps = reference.cdf_theta(lobe, -inner) + 1.0 - reference.cdf_theta(lobe, inner);
         caps + integrate(&ends, |theta| at(theta, phi_0))
             * 2.0

@@ -1,4 +1,4 @@
-//! Exact cases: the ends of every range.
+//! Tests of exact cases, at the ends of every range.
 
 use super::Tested;
 use super::handles::{Bsdf, Material};
@@ -17,7 +17,7 @@ fn material<'a>(tested: &'a Tested, desc: &HairDesc) -> Material<'a> {
     Material::new(tested.model(), &HairParams::new(desc).unwrap())
 }
 
-/// The sample of one lane, and of every level.
+/// Draws the sample of one lane, and of every level.
 pub(super) fn samples(bsdf: &Bsdf, xi: [f32; 3]) -> Vec<Option<Sample>> {
     let wide =
         Level::available().map(|level| bsdf.with_level(level).sample8(&lanes_of(&[xi; 8])).lane(5));
@@ -83,7 +83,7 @@ pub fn ends_of_xi_give_sound_samples_of_every_lobe(tested: &Tested) {
     );
 }
 
-/// On the seam R and TRT-g vanish: what is left of them is a difference of rounded numbers, and nothing else has their colours.
+/// On the seam R and TRT-g vanish: only a difference of rounded numbers is left of them, and no other lobe has their colours.
 pub fn nothing_is_negative_on_the_seam(tested: &Tested) {
     let black = [0.0; 3];
     let colours = HairDesc {
@@ -206,7 +206,7 @@ pub fn vectors_that_are_no_direction_give_zero(tested: &Tested) {
 }
 
 pub fn the_seam_is_no_edge(tested: &Tested) {
-    // phi = pi: TT peaks, R and TRT-g vanish, and both sides are one.
+    // At phi = pi, TT peaks, R and TRT-g vanish, and both sides are one.
     for (y, z) in [(1.0, 0.0), (0.0, 1.0), (0.6, -0.8)] {
         let wo = Vec3::new(0.0, y, z);
         let bsdf = material(tested, HairParams::bright().desc()).prepare(wo);
@@ -238,7 +238,7 @@ pub fn a_zero_wo_counts_as_the_normal_plane(tested: &Tested) {
     let wi = Vec3::new(0.3, 0.5, 0.7).normalize();
     let zero = material.prepare(Vec3::ZERO).eval_pdf(wi);
     assert_eq!(zero, material.prepare(Vec3::Y).eval_pdf(wi), "wo of zero");
-    // Length does not matter.
+    // The length of a direction does not matter.
     for wo in [Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.28, 0.0, 0.96)] {
         let unit = material.prepare(wo).eval_pdf(wi);
         for length in [1e-20, 0.01, 3.0, 100.0, 1e20, 1e38] {
@@ -379,7 +379,7 @@ pub fn grazing_samples_are_discarded(tested: &Tested) {
     }
 }
 
-/// Products of components next to nothing left the range of a float, and every result was the largest one.
+/// Products of tiny components once left the range of a float, so that every result was the largest float.
 pub fn an_azimuth_next_to_nothing_is_still_an_azimuth(tested: &Tested) {
     let bsdf = material(tested, HairParams::bright().desc()).prepare(Vec3::new(1.0, 1e-15, 0.0));
     let reference =
@@ -400,7 +400,7 @@ pub fn an_azimuth_next_to_nothing_is_still_an_azimuth(tested: &Tested) {
     }
 }
 
-/// Nor have their squares digits, where they are denormals.
+/// Squares of tiny components have few digits left if they are denormals.
 pub fn a_direction_next_to_the_axis_is_still_a_direction(tested: &Tested) {
     for off in [
         1e-15,
@@ -435,7 +435,7 @@ pub fn a_direction_next_to_the_axis_is_still_a_direction(tested: &Tested) {
     }
 }
 
-/// The strength of the glints and their colour may each be absurd where their product is not.
+/// The strength of the glints and their colour may each be extreme although their product is not.
 pub fn absurd_glints_of_a_faint_colour_do_not_overflow(tested: &Tested) {
     let usual = HairDesc {
         i_g: 2.0,

@@ -1,4 +1,4 @@
-//! Lobes next to nothing: faint ones, and those that lie off the sphere.
+//! Tests of lobes next to nothing: faint ones, and ones that lie off the sphere.
 
 use super::Tested;
 use super::edge::samples;
@@ -18,7 +18,7 @@ fn near(got: f32, want: f32, by: f32) -> bool {
     (got / want - 1.0).abs() < by
 }
 
-/// A share of the energy below the normal numbers has no reciprocal.
+/// A share of the energy below the normal numbers has no finite reciprocal.
 pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one(tested: &Tested) {
     let mut draws = Draws(61);
     let only = LobeMask::of(&[Lobe::TT]);

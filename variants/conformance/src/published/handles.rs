@@ -1,5 +1,5 @@
-//! Handles of any model of the family, with the names of those of [`hairis`]: the tests are compiled once, and these calls once
-//! per model.
+//! Handles of any model of the family, with the names of the handles of [`hairis`]. The tests are compiled once, and these calls once per
+//! model.
 
 use crate::erased::{ErasedBsdf, ErasedBsdf8};
 use glam::Vec3;
@@ -7,13 +7,13 @@ use hairis::model::{DynBsdf, LobeEval, LobeEval8, Model};
 use hairis::simd::{Level, f32x8};
 use hairis::{Conserving, HairParams, Hit, Hit8, LobeMask, PerLobe, Sample8, Vec3x8};
 
-/// A model of the family.
+/// Model of the family, without its types.
 pub(super) trait AnyModel {
     fn prepare(&self, params: &HairParams, hit: Hit) -> Box<dyn ErasedBsdf>;
     fn prepare8(&self, params: &HairParams, level: Level, hits: &Hit8) -> Box<dyn ErasedBsdf8>;
-    /// The constants of a shading point, by the function for one lane and by that for lanes.
+    /// Returns the constants of a shading point, by the function for one lane and by the function for lanes.
     fn constants(&self, params: &HairParams, hit: Hit) -> [String; 2];
-    /// Albedo of hair that conserves energy.
+    /// Returns the albedo of hair that conserves energy.
     fn conserving_albedo(&self, params: &HairParams, hit: Hit) -> PerLobe<[f32; 3]>;
     fn max_albedo(&self, params: &HairParams) -> f32;
     fn conserving_scale(&self, params: &HairParams) -> f32;
@@ -97,7 +97,7 @@ impl<M: Model> Sampling for hairis::Bsdf<M> {
     }
 }
 
-/// A material.
+/// Parameters with a model of the family, as [`hairis::Material`] has them.
 #[derive(Clone, Copy)]
 pub(super) struct Material<'a> {
     model: &'a dyn AnyModel,
@@ -136,5 +136,5 @@ impl<'a> Material<'a> {
     }
 }
 
-/// A BSDF.
+/// Shading point of any model of the family.
 pub(super) type Bsdf = Box<dyn ErasedBsdf>;

@@ -1,4 +1,4 @@
-//! The lobes apart: their sums, and every subset of them.
+//! Tests of separate lobes: their sums, and every subset of them.
 
 use super::Tested;
 use super::support::{Kind, double, for_each_point, narrow};
@@ -80,7 +80,7 @@ pub fn a_lobe_is_colored_by_its_parameters(tested: &Tested) {
         for (lobe, color) in Lobe::ALL.into_iter().zip(colors) {
             assert_eq!(lobes[lobe].color, color, "color of {lobe:?}");
         }
-        // The strength of the glints is theirs, not the color's.
+        // The strength of the glints belongs to their value, not to their colour.
         let glint = reference.lobe_values(double(wi))[Lobe::GLINT];
         let error = relative(lobes[Lobe::GLINT].value, glint, 1e-20);
         assert!(

@@ -1,4 +1,4 @@
-//! One lane rounds every product, and levels that fuse are close to it.
+//! Tests that one lane rounds every product, and that levels that fuse are close to it.
 
 use super::Tested;
 use super::support::{Draws, Kind, Point, for_each_point, lanes_of, packet};
@@ -7,7 +7,7 @@ use glam::Vec3;
 use hairis::Hit;
 use hairis::simd::Level;
 
-/// Also in builds whose every level fuses.
+/// One lane does not fuse even in builds whose every level fuses.
 pub fn one_lane_never_fuses(tested: &Tested) {
     let model = tested.model();
     let mut draws = Draws(16);
@@ -19,7 +19,7 @@ pub fn one_lane_never_fuses(tested: &Tested) {
     }
 }
 
-/// Directions where a lane is well conditioned: off the seam and off the axis.
+/// Returns directions where a lane is well conditioned: off the seam and off the axis.
 fn tame(point: &Point) -> Vec<Vec3> {
     let mut all = point.directions(256);
     all.retain(|wi| {

@@ -1,4 +1,4 @@
-//! Samples agree with value and density.
+//! Tests that samples agree with value and density.
 
 use super::Tested;
 use super::handles::Material;

@@ -1,13 +1,13 @@
-//! Integrals in `f64`: composite Gauss-Legendre with panels that shrink towards the peaks.
+//! Integrals in `f64`, by composite Gauss-Legendre quadrature with panels that shrink towards the peaks.
 
 use core::f64::consts::PI;
 use std::sync::LazyLock;
 
-/// Points a panel. With panels that double in width away from a peak, a Gaussian or a Cauchy bell is integrated to
-/// about 1e-10 of its mass.
+/// Number of points per panel. With panels that double in width away from a peak, a Gaussian or a Cauchy bell is integrated to about
+/// 1e-10 of its mass.
 pub const POINTS: usize = 12;
 
-/// Gauss and Legendre's rule of so many points: nodes and weights on [-1, 1], by Newton's method on the polynomial.
+/// Returns the Gauss-Legendre rule of `count` points: nodes and weights on [-1, 1], by Newton's method on the polynomial.
 pub fn gauss(count: usize) -> Vec<(f64, f64)> {
     let n = count as f64;
     let point = |k: usize| {
@@ -27,10 +27,10 @@ pub fn gauss(count: usize) -> Vec<(f64, f64)> {
     (0..count).map(point).collect()
 }
 
-/// The rule of a panel.
+/// Rule of one panel.
 static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| gauss(POINTS));
 
-/// Ends of panels on `[lo, hi]` for bells given as (peak, width): at each peak, and at 1, 2, 4 ... widths from it.
+/// Returns the ends of panels on `[lo, hi]` for bells given as (peak, width): at each peak, and at 1, 2, 4 ... widths from it.
 pub fn panels(lo: f64, hi: f64, bells: &[(f64, f64)]) -> Vec<f64> {
     let mut ends = vec![lo, hi];
     for &(peak, width) in bells {
@@ -47,7 +47,7 @@ pub fn panels(lo: f64, hi: f64, bells: &[(f64, f64)]) -> Vec<f64> {
     ends
 }
 
-/// Points and weights of the panels between successive `ends`.
+/// Returns the points and weights of the panels between successive `ends`.
 pub fn rule(ends: &[f64]) -> Vec<(f64, f64)> {
     let panel = |ends: &[f64]| {
         let (middle, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
@@ -56,7 +56,7 @@ pub fn rule(ends: &[f64]) -> Vec<(f64, f64)> {
     ends.windows(2).flat_map(panel).collect()
 }
 
-/// The integral of `f` over the panels between successive `ends`.
+/// Integrates `f` over the panels between successive `ends`.
 pub fn integrate(ends: &[f64], f: impl Fn(f64) -> f64) -> f64 {
     rule(ends).into_iter().map(|(x, w)| w * f(x)).sum()
 }

@@ -1,4 +1,4 @@
-//! Samples against the reference: cdf of the drawn angle, value, density and weight at the drawn direction.
+//! Tests of samples against the reference: cdf of the drawn angle, value, density and weight at the drawn direction.
 
 use super::Tested;
 use super::support::{Draws, Kind, Point, angles, double, for_each_point, lanes_of};
@@ -9,7 +9,7 @@ use hairis::simd::Level;
 use hairis::{Lobe, LobeMask, Sample};
 use hairis_reference::Reference;
 
-/// Eight triples: uniform numbers, with the ends of their range in between.
+/// Draws eight triples of uniform numbers, with the ends of their range in between.
 fn draw8(draws: &mut Draws) -> [[f32; 3]; 8] {
     let mut one = || match draws.below(16) {
         0 => 0.0,
@@ -20,19 +20,19 @@ fn draw8(draws: &mut Draws) -> [[f32; 3]; 8] {
     core::array::from_fn(|_| [one(), one(), one()])
 }
 
-/// Distance on the circle of circumference 1, where a cdf of an azimuth may start anywhere.
+/// Returns the distance on the circle of circumference 1, where a cdf of an azimuth may start anywhere.
 fn around(a: f64, b: f64) -> f64 {
     let d = (a - b).abs();
     d.min(1.0 - d)
 }
 
-/// `phi_o - phi_i` in (-pi, pi].
+/// Returns `phi_o - phi_i` in (-pi, pi].
 fn phi(point: &Point, sample: &Sample) -> f64 {
     let ([_, v_o, w_o], [_, v, w]) = (double(point.wo), double(sample.wi));
     (v * w_o - w * v_o).atan2(v * v_o + w * w_o)
 }
 
-/// Errors of a sample at the direction it returned: S, density, weight, and the length of the direction.
+/// Takes the errors of a sample at the direction it returned into account: S, density, weight, and the length of the direction.
 fn see(
     tested: &Tested,
     worst: &mut [LargestError; 4],
@@ -51,7 +51,7 @@ fn see(
         return;
     }
     let (value, pdf) = (reference.eval(d), reference.pdf(d));
-    // On the seam R and TRT-g vanish, and the rounding of the direction is all that is left of them.
+    // On the seam R and TRT-g vanish, and only the rounding of the direction is left of them.
     let seam = PI - phi < 1e-3;
     if !(seam && tested.formulas.bands.is_some()) {
         worst[1].see(relative(sample.pdf, pdf, tested.pdf_floor), at);
@@ -89,9 +89,9 @@ fn check(tested: &Tested, kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 
                         edge += p;
                         (edge - f64::from(xi[0])).abs()
                     });
-                    // Within a rounding of the next lobe, or so close to the axis that either may discard.
+                    // Within a rounding of the next lobe, or so close to the axis that either may be discarded.
                     let grazing = chosen.is_none() && angles(point.wo, sample.wi)[0].cos() < 1e-3;
-                    // At the very end of a Gaussian either may find no density left.
+                    // At the very end of a Gaussian, either may have no density left.
                     let end = chosen.is_none()
                         && tested.formulas.bands.is_some()
                         && (xi[1] == 0.0 || xi[1] == LAST);
@@ -102,7 +102,7 @@ fn check(tested: &Tested, kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 
                     );
                 }
             }
-            // The cdf of what each lobe draws is the number it was drawn with.
+            // The cdf of the angles that each lobe draws is the number they were drawn with.
             for lobe in Lobe::ALL {
                 let alone = bsdf.with_lobes(LobeMask::of(&[lobe]));
                 let wide: Vec<_> = Level::available()

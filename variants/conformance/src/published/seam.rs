@@ -1,4 +1,4 @@
-//! Next to `|phi|` = pi, where glints may end: samples report value and density of the direction they return, however narrow TT is.
+//! Tests next to `|phi|` = pi, where glints may end: samples report value and density of the direction they return, however narrow TT is.
 
 use super::Tested;
 use super::handles::Material;
@@ -8,7 +8,7 @@ use hairis::params::HairDesc;
 use hairis::simd::Level;
 use hairis::{HairParams, Lobe};
 
-/// Numbers of 24 bits about a half, which both TT and the glints draw pi from: all next to it, and then fewer and fewer.
+/// Returns numbers of 24 bits about a half, from which both TT and the glints draw pi: all next to it, and then fewer and fewer.
 fn about_a_half() -> impl Iterator<Item = f32> {
     let steps = (0..200_u16).chain((8..20).map(|power| 7 << (power - 5)));
     steps.flat_map(|k| [1.0, -1.0].map(|side| 0.5 + side * f32::from(k) * f32::EPSILON / 2.0))
@@ -50,7 +50,7 @@ pub fn samples_next_to_the_seam_report_their_own_direction(tested: &Tested) {
                     let eight = bsdf.with_level(level).sample8(&lanes_of(&xi));
                     (0..8).filter_map(move |lane| eight.lane(lane))
                 }) {
-                    // R and TRT-g are 0 where TT and the glints are drawn about pi, and elsewhere where they are.
+                    // R and TRT-g are 0 where TT and the glints are drawn about pi, and elsewhere where R and TRT-g are drawn.
                     if sample.lobe != Lobe::TT && sample.lobe != Lobe::GLINT {
                         continue;
                     }

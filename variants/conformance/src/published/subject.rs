@@ -1,4 +1,4 @@
-//! The family as subjects of the suite.
+//! Models of the family as subjects of the suite.
 
 use super::support::{double, oracle, parameters, widths};
 use super::{FamilyModel, formulas};
@@ -12,12 +12,12 @@ use hairis::params::{HairDesc, MAX_WIDTH, MIN_WIDTH};
 use hairis::{HairParams, Hit, LobeMask};
 use proptest::prelude::*;
 
-/// A model of the family, under the general suite.
+/// Subject of the general suite for a model of the family.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Family<P>(PhantomData<P>);
 
 impl<P> Family<P> {
-    /// The subject.
+    /// Makes the subject, which has no data.
     #[must_use]
     pub const fn new() -> Self {
         Self(PhantomData)
@@ -123,7 +123,7 @@ impl<P: FamilyModel> Subject for Family<P> {
         [theta, around.to_vec()]
     }
 
-    /// The bound is on the mean of the channels.
+    /// Returns three times the bound on the mean of the channels.
     fn weight_bound(&self, params: &HairParams, hit: &Hit, lobes: LobeMask) -> Option<f64> {
         let reference = oracle(&formulas::<P>(), params, P::forms()[0].1, vector(hit));
         Some(3.0 * reference.weight_bound(lobes)?)
@@ -145,7 +145,7 @@ impl<P: FamilyModel> Subject for Family<P> {
             value,
             pdf,
             lobes: Some(lobe_value.max(lobe_pdf)),
-            // Normalised, a lobe of the last few powers of two of a Gaussian would show its cut.
+            // Normalised, a lobe of the last few powers of two of a Gaussian would show where the Gaussian is cut.
             lobe_floor: P::PDF_FLOOR,
             rounding: 5e-7,
             ..Tolerance::default()

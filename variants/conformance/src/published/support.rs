@@ -1,4 +1,4 @@
-//! Shared by the tests: numbers, directions, materials, and the reference set beside the kernels.
+//! Numbers, directions, materials and references that the tests share.
 
 pub use crate::probe::{Draws, direction, double, narrow, triples as lanes_of};
 
@@ -13,7 +13,7 @@ use hairis_reference::{HairFormulas, Reference};
 pub const DEG: f64 = PI / 180.0;
 
 impl Draws {
-    /// Log-uniform.
+    /// Draws a number whose logarithm is uniform between those of `lo` and `hi`.
     pub fn scale(&mut self, lo: f64, hi: f64) -> f64 {
         self.between(lo.ln(), hi.ln()).exp()
     }
@@ -26,8 +26,8 @@ impl Draws {
         if self.bits() & 1 == 0 { 1.0 } else { -1.0 }
     }
 
-    /// A direction where something happens: anywhere, beside the peaks of the lobes, the seam, the plane of `wo`, the
-    /// glints, or close to the axis.
+    /// Draws a direction where results vary: anywhere, beside the peaks of the lobes, the seam, the plane of `wo`, the glints, or close
+    /// to the axis.
     pub fn near_lobes(&mut self, p: &HairDesc<f64>, theta_o: f64, phi_o: f64) -> Vec3 {
         let lobe = self.below(3);
         let theta = match self.below(4) {
@@ -47,7 +47,7 @@ impl Draws {
         direction(theta.clamp(-inside, inside), phi_o - phi)
     }
 
-    /// Legal parameters from the whole range, its ends included more often than chance.
+    /// Draws legal parameters from the whole range, its ends included more often than chance.
     pub fn params(&mut self, brightest: f64) -> HairParams {
         let mut width = || match self.below(8) {
             0 => MIN_WIDTH,
@@ -92,14 +92,14 @@ impl Draws {
     }
 }
 
-/// Inclination, and azimuth relative to `wo` folded into `[0, pi]`.
+/// Returns the inclination of `wi`, and its azimuth relative to `wo` folded into `[0, pi]`.
 pub fn angles(wo: Vec3, wi: Vec3) -> [f64; 2] {
     let ([_, v_o, w_o], [u, v, w]) = (double(wo), double(wi));
     let (dot, cross) = (v * v_o + w * w_o, v * w_o - w * v_o);
     [u.atan2(v.hypot(w)), cross.atan2(dot).abs()]
 }
 
-/// The parameters the reference needs for the kernels' widths: rounded where they round.
+/// Returns the parameters that the reference needs for the kernels' widths, rounded where the kernels round.
 pub fn parameters(params: &HairParams, factor: f32) -> HairDesc<f64> {
     let p = params.desc().map(f64::from);
     let d = params.desc();
@@ -112,7 +112,7 @@ pub fn parameters(params: &HairParams, factor: f32) -> HairDesc<f64> {
     }
 }
 
-/// The reference at the shading point of `wo`.
+/// Returns the reference at the shading point of `wo`.
 pub fn oracle(
     formulas: &HairFormulas,
     params: &HairParams,
@@ -122,18 +122,18 @@ pub fn oracle(
     formulas.prepare(&parameters(params, factor), double(wo))
 }
 
-/// The kinds of material that bounds are stated for.
+/// Kinds of material that bounds are stated for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// The grid of the efficiency figures, and the presets.
+    /// Materials of the grid of the efficiency figures, and the presets.
     Grid,
-    /// Every width 0.5 degrees.
+    /// Materials whose widths are all 0.5 degrees.
     Narrow,
-    /// Every width 60 degrees.
+    /// Materials whose widths are all 60 degrees.
     Wide,
 }
 
-/// The default hair with every width this, rad.
+/// Returns the default hair with all widths set to `width`, in rad.
 pub(super) fn widths(width: f32) -> HairDesc {
     HairDesc {
         beta: [width; 3],
@@ -143,7 +143,7 @@ pub(super) fn widths(width: f32) -> HairDesc {
     }
 }
 
-/// The materials of one kind.
+/// Returns the materials of one kind.
 pub fn materials(kind: Kind) -> Vec<HairParams> {
     let uniform = |deg: f64| {
         let widths = widths(narrow(deg * DEG));
@@ -181,7 +181,7 @@ pub fn materials(kind: Kind) -> Vec<HairParams> {
     }
 }
 
-/// A point of the grid of the efficiency figures, in degrees.
+/// Returns a material of the grid of the efficiency figures, with angles in degrees.
 pub fn grid_point(beta_r: f64, gamma_tt: f64, gamma_g: f64, phi_g: f64, i_g: f32) -> HairParams {
     let beta = [1.0, 0.5, 2.0].map(|k| narrow(k * beta_r * DEG));
     let [gamma_tt, gamma_g, phi_g] = [gamma_tt, gamma_g, phi_g].map(|x| narrow(x * DEG));
@@ -196,12 +196,12 @@ pub fn grid_point(beta_r: f64, gamma_tt: f64, gamma_g: f64, phi_g: f64, i_g: f32
     HairParams::new(&desc).unwrap()
 }
 
-/// Inclinations of `wo`, degrees: grazing on both sides, and tilted.
+/// Inclinations of `wo` in degrees: grazing on both sides, and tilted.
 pub const THETA_O: [f64; 12] = [
     0.0, 15.0, -30.0, 45.0, -60.0, 75.0, -80.0, 85.0, 89.0, -89.0, 89.9, -89.9,
 ];
 
-/// A material of one kind with its reference, for every form of the model, material and inclination.
+/// Calls `f` with a material of one kind and its reference, for every form of the model, material and inclination.
 pub(super) fn for_each_point(
     tested: &Tested,
     kind: Kind,
@@ -233,7 +233,7 @@ pub(super) fn for_each_point(
     }
 }
 
-/// A shading point of a material, as parameters and angles.
+/// Shading point of a material, as parameters and angles.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
     pub params: HairParams,
@@ -245,7 +245,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// Directions to test at, the same at every run; none on the edge where the sampler cuts the glints.
+    /// Returns directions to test at, which are the same in every run. None is on the edge where the sampler cuts the glints.
     pub fn directions(&self, count: usize) -> Vec<Vec3> {
         let mut draws = Draws(self.seed);
         let mut all = Vec::with_capacity(count);
@@ -259,7 +259,7 @@ impl Point {
     }
 }
 
-/// Eight lanes of a list, which is repeated where it is short.
+/// Packs a list into eight lanes, and repeats it if it is short.
 pub fn packet(v: &[Vec3]) -> Vec3x8 {
     core::array::from_fn::<Vec3, 8, _>(|lane| v[lane % v.len()]).into()
 }

@@ -1,5 +1,5 @@
-//! Samples far from the centres of their lobes, at the ends of the uniform numbers: what they report is of the direction they
-//! return.
+//! Tests of samples far from the centres of their lobes, at the ends of the uniform numbers: they report value and density of the
+//! direction they return.
 
 use super::Tested;
 use super::handles::Material;
@@ -30,8 +30,8 @@ const NUMBERS: [f32; 15] = [
     LAST,
 ];
 
-/// S, density and weight of samples at these numbers, further than 1e-3 rad from the axis and from the seam; the density of TT and
-/// the glints also next to the seam.
+/// Returns the errors of S, density and weight of samples at these numbers, further than 1e-3 rad from the axis and from the seam. For TT
+/// and the glints, it also returns the error of the density next to the seam.
 fn errors(
     tested: &Tested,
     descs: &[HairDesc],
@@ -66,7 +66,7 @@ fn errors(
                     seen += 1;
                     let error = relative(sample.pdf, pdf, tested.pdf_floor);
                     if PI - angle < 1e-3 {
-                        // R and TRT-g vanish there, and the rounding of the direction is all that is left of them.
+                        // R and TRT-g vanish there, and only the rounding of the direction is left of them.
                         if sample.lobe == Lobe::TT || sample.lobe == Lobe::GLINT {
                             worst[3].see(error, at);
                         }
@@ -86,7 +86,7 @@ fn errors(
     (worst, seen)
 }
 
-/// Every width a degree or a little more.
+/// Returns materials whose widths are a degree or a little more.
 fn degrees() -> Vec<HairDesc> {
     let default = *HairParams::bright().desc();
     let mut all = Vec::new();
@@ -128,7 +128,7 @@ pub fn samples_in_the_tails_report_their_own_direction(tested: &Tested) {
     }
 }
 
-/// No lobe has its centre on the sphere: all samples are of tails, up to nine widths out.
+/// No lobe has its centre on the sphere, so that all samples are of tails, up to nine widths out.
 pub fn samples_of_lobes_off_the_sphere_report_their_own_direction(tested: &Tested) {
     let off: Vec<HairDesc> = degrees()
         .into_iter()

@@ -1,4 +1,4 @@
-//! Values, densities and lobes against the reference in double precision, one lane and eight, on every level.
+//! Tests of values, densities and lobes against the reference in double precision, on one lane and eight, on every level.
 
 use super::Tested;
 use super::support::{Kind, for_each_point, packet};
@@ -6,10 +6,10 @@ use crate::comparison::{LargestError, relative};
 use hairis::simd::Level;
 use hairis::{Eval, Lobe};
 
-/// Below this share of 1 per steradian a Gaussian is compared absolutely: it is cut to 0 at `2^-115` of its peak.
+/// Share of 1 per steradian below which a Gaussian is compared absolutely: it is cut to 0 at `2^-115` of its peak.
 const FLOOR: f64 = 1e-20;
 
-/// Largest errors of S and of the density over the materials of a kind.
+/// Returns the largest errors of S and of the density over the materials of a kind.
 fn scan(tested: &Tested, kind: Kind, per_point: usize) -> [LargestError; 4] {
     let mut worst: [LargestError; 4] = Default::default();
     for_each_point(tested, kind, |material, reference, point| {
@@ -44,7 +44,7 @@ fn scan(tested: &Tested, kind: Kind, per_point: usize) -> [LargestError; 4] {
                 for lobe in Lobe::ALL {
                     let eight = &wide_lobes[lobe];
                     let wide = [eight.value.as_array()[lane], eight.pdf.as_array()[lane]];
-                    // Normalised, a lobe of the last few powers of two of a Gaussian would show its cut.
+                    // Normalised, a lobe of the last few powers of two of a Gaussian would show where the Gaussian is cut.
                     let cut = lobe_values[lobe] < tested.pdf_floor;
                     for [value, pdf] in [[scalar[lobe].value, scalar[lobe].pdf], wide] {
                         let at =

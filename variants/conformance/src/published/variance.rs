@@ -1,5 +1,5 @@
-//! The relative variance V of one sample under constant light, of every sampler: quadrature of the kernels' own values
-//! and densities over the grid of the efficiency figures.
+//! Tests of the relative variance V of one sample under constant light, for every sampler, by quadrature of the kernels' own values and
+//! densities over the grid of the efficiency figures.
 
 use super::Tested;
 use super::handles::{Sampler, Sampling};
@@ -12,10 +12,10 @@ use hairis_reference::{HairFormulas, Reference};
 
 const PHI_O: f64 = 0.4;
 
-/// Probabilities of the lobes, by parameters and `theta_o`.
+/// Function that returns the probabilities of the lobes, by parameters and `theta_o`.
 type Shares<'a> = &'a dyn Fn(&HairParams, f64) -> PerLobe<f64>;
 
-/// With the matched sampler of so many bands, or with the published one.
+/// Returns the probabilities of the lobes with the matched sampler of `bands` bands, or with the published one.
 fn shares(
     tested: &Tested,
     bands: Option<usize>,
@@ -38,14 +38,14 @@ fn reference(
     formulas.prepare(&parameters(params, 1.0), wo)
 }
 
-/// Quadrature in one angle: its weights, and each lobe's value and density there, the other angle at a peak.
+/// Quadrature in one angle: its weights, and each lobe's value and density there, with the other angle at a peak.
 struct Line {
     weights: Vec<f64>,
     value: [Vec<f64>; 4],
     density: [Vec<f64>; 4],
 }
 
-/// `theta` and `phi` where a lobe is large.
+/// Returns `theta` and `phi` where a lobe is large.
 fn peak(params: &HairParams, theta_o: f64, lobe: Lobe) -> [f64; 2] {
     let p = parameters(params, 1.0);
     [
@@ -76,7 +76,7 @@ fn line(bsdf: &dyn Sampling, points: &[(f64, f64)], at: impl Fn(Lobe, f64) -> [f
     line
 }
 
-/// The line in `theta_i`: values absolute, densities to an integral of 1; the density jumps at `jumps`.
+/// Returns the line in `theta_i`: values absolute, densities to an integral of 1; the density jumps at `jumps`.
 fn inclination(bsdf: &dyn Sampling, params: &HairParams, theta_o: f64, jumps: &[f64]) -> Line {
     let p = parameters(params, 1.0);
     let bell = |l: usize| (2.0 * p.alpha[l] - theta_o, p.beta[l]);
@@ -95,7 +95,7 @@ fn inclination(bsdf: &dyn Sampling, params: &HairParams, theta_o: f64, jumps: &[
     line
 }
 
-/// The line in `phi`: values to a peak of 1, densities to an integral of 1.
+/// Returns the line in `phi`: values to a peak of 1, densities to an integral of 1.
 fn azimuth(bsdf: &dyn Sampling, params: &HairParams, theta_o: f64) -> Line {
     let p = parameters(params, 1.0);
     let ends = panels(
@@ -124,7 +124,7 @@ fn unit(density: &mut [Vec<f64>; 4], weights: &[f64]) {
     }
 }
 
-/// V of the mean of RGB.
+/// Returns V of the mean of RGB.
 fn v(long: &Line, round: &Line, params: &HairParams, shares: PerLobe<f64>) -> f64 {
     let d = params.desc();
     let mean = |rgb: [f32; 3]| rgb.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
@@ -147,12 +147,12 @@ fn v(long: &Line, round: &Line, params: &HairParams, shares: PerLobe<f64>) -> f6
     second / (first * first) - 1.0
 }
 
-/// The inclinations where the density of a sampler of so many bands jumps: the same for all hair.
+/// Returns the inclinations where the density of a sampler of `bands` bands jumps, which are the same for all hair.
 fn jumps(tested: &Tested, bands: usize) -> Vec<f64> {
     reference(tested, Some(bands), &HairParams::bright(), [0.0, 1.0, 0.0]).jumps()
 }
 
-/// V at every point of the grid.
+/// Returns V at every point of the grid.
 fn over_grid(sampler: &dyn Sampler, shares: Shares<'_>, jumps: &[f64]) -> Vec<f64> {
     let mut all = Vec::new();
     for beta in [2.5, 5.0, 7.5, 10.0, 15.0, 20.0] {
@@ -186,7 +186,7 @@ fn over_grid(sampler: &dyn Sampler, shares: Shares<'_>, jumps: &[f64]) -> Vec<f6
     all
 }
 
-/// The mean of V, the geometric mean of its gain over the published sampler, and the least of it.
+/// Returns the mean of V, the geometric mean of its gain over the published sampler, and the least gain.
 fn gain(tested: &Tested, bands: usize, published: &[f64], v: &[f64]) -> [f64; 3] {
     let n = narrow(v.len() as f64);
     let mean = |x: &[f64]| x.iter().sum::<f64>() / f64::from(n);

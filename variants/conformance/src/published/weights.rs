@@ -1,8 +1,7 @@
-//! No fireflies, by proof: every weight is below a closed-form bound.
+//! Proof and tests that there are no fireflies: every weight is below a closed-form bound.
 //!
-//! With `x` and `y` the distances from the centres of a lobe's bells in widths, lobe `l` adds `I_c M(x) N(y) W` to
-//! `S cos^2 theta_i` and `P_l c(x) n(y) / (2 beta span)` to `pdf cos theta_i`, with `c` the Cauchy value. Their ratio
-//! is `W I_c / P_l` times
+//! With `x` and `y` the distances from the centres of a lobe's bells in widths, lobe `l` adds `I_c M(x) N(y) W` to `S cos^2 theta_i` and
+//! `P_l c(x) n(y) / (2 beta span)` to `pdf cos theta_i`, with `c` the Cauchy value. Their ratio is `W I_c / P_l` times
 //!
 //! - `8 beta span k` for R and TRT-g, as `N = 4 n`;
 //! - `2 beta span gamma C k^2` for TT, as `n = c(y) / (C gamma)`;
@@ -12,8 +11,8 @@
 //! fractions is at most the largest of them, so a weight is at most `W` times the largest over the lobes of non-zero
 //! colour, and `W <= 4`.
 //!
-//! Hypothesis: `|phi| <= pi/2`, or no glints. Beyond, the published sampler gives the glints no density (ERRATA E3),
-//! and where R and TT are black no bound exists: [`the_published_flaw_is_there`] shows it.
+//! Hypothesis: `|phi| <= pi/2`, or no glints. Beyond, the published sampler gives the glints no density (ERRATA E3), so that no bound
+//! exists where R and TT are black, as [`the_published_flaw_is_there`] shows.
 
 use super::Tested;
 use super::handles::Material;
@@ -25,12 +24,12 @@ use hairis::params::HairDesc;
 use hairis::simd::Level;
 use hairis::{HairParams, Lobe, LobeMask, Sample};
 
-/// `A - B`: the angle that the interval `[lo, hi]` subtends at a bell of width `b`.
+/// Returns `A - B`: the angle that the interval `[lo, hi]` subtends at a bell of width `b`.
 fn span(lo: f64, hi: f64, b: f64) -> f64 {
     (b * (hi - lo)).atan2(b * b + lo * hi)
 }
 
-/// `weight_c / W` at most, for each channel, of the lobes in `mask`.
+/// Returns the largest possible `weight_c / W`, for each channel, of the lobes in `mask`.
 fn bounds(tested: &Tested, params: &HairParams, factor: f32, wo: Vec3, mask: LobeMask) -> [f64; 3] {
     let p = parameters(params, factor);
     let probability = oracle(&tested.formulas, params, factor, wo).probabilities();
@@ -68,14 +67,14 @@ fn bounds(tested: &Tested, params: &HairParams, factor: f32, wo: Vec3, mask: Lob
     })
 }
 
-/// `(cos theta_i / cos theta_d)^2`: at most 4.
+/// Returns `(cos theta_i / cos theta_d)^2`, which is at most 4.
 fn w(wo: Vec3, wi: Vec3) -> f64 {
     let theta = |v: Vec3| double(v)[0].atan2(double(v)[1].hypot(double(v)[2]));
     let (o, i) = (theta(wo), theta(wi));
     (i.cos() / (0.5 * (o - i)).cos()).powi(2)
 }
 
-/// The largest weight of a sample over `W` times its bound.
+/// Takes the ratio of a sample's largest weight to `W` times its bound into account.
 fn worst_ratio(
     worst: &mut LargestError,
     limit: [f64; 3],
@@ -95,7 +94,7 @@ fn worst_ratio(
             weight <= 4.0 * limit * (1.0 + 1e-3),
             "a firefly: {sample:?} wo {wo:?} {params:?}"
         );
-        // Next to the axis W is made of rounding errors.
+        // Next to the axis W consists of rounding errors.
         if w > 1e-4 && limit > 0.0 {
             worst.see(weight / (w * limit), || {
                 format!("{sample:?} wo {wo:?} {params:?}")
@@ -104,7 +103,8 @@ fn worst_ratio(
     }
 }
 
-/// Materials whose longitudinal lobes are not far off the domain (there a float's cdf is coarse), of all kinds else.
+/// Draws materials whose longitudinal lobes are not far off the domain, where a float's cdf is coarse; all other parameters are
+/// arbitrary.
 fn material(draws: &mut Draws) -> HairParams {
     let any = draws.params(1e3);
     let d = *any.desc();
@@ -157,7 +157,7 @@ pub fn weights_are_below_their_bound(tested: &Tested) {
 }
 
 pub fn the_bound_is_reached(tested: &Tested) {
-    // A lobe alone, at one width from its centres: the bound is the least one.
+    // A lobe alone reaches its bound at one width from its centres.
     let mut draws = Draws(22);
     for (model, factor) in tested.forms() {
         let params = HairParams::bright();
@@ -181,7 +181,7 @@ pub fn the_bound_is_reached(tested: &Tested) {
     }
 }
 
-/// Wide glints whose tails reach the seam.
+/// Returns hair with wide glints whose tails reach the seam.
 fn bright_glints(i_r: [f32; 3]) -> HairParams {
     let desc = HairDesc {
         i_r,
@@ -195,7 +195,7 @@ fn bright_glints(i_r: [f32; 3]) -> HairParams {
 }
 
 pub fn the_published_flaw_is_there(tested: &Tested) {
-    // ERRATA E3: towards the seam the glints' tail is sampled by TRT-g alone, which vanishes there.
+    // By ERRATA E3, towards the seam the glints' tail is sampled by TRT-g alone, which vanishes there.
     for (model, factor) in tested.forms() {
         let params = bright_glints([0.0; 3]);
         let wo = direction(0.3, 0.0);
@@ -211,7 +211,7 @@ pub fn the_published_flaw_is_there(tested: &Tested) {
             towards[2] > 20.0 * limit,
             "no weight far above the bound {limit}: {towards:?}"
         );
-        // cos(phi/2) falls as the root of xi, and the weight grows as its inverse.
+        // The factor cos(phi/2) falls as the root of xi, and the weight grows as its inverse.
         let growth = towards[2] / towards[1];
         assert!(
             (growth / 10.0 - 1.0).abs() < 0.05,

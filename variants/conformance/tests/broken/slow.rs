@@ -1,4 +1,4 @@
-//! The sound fibre, one function of which is not inlined: its results are the same.
+//! Sound fibre with one function that is not inlined; its results are the same.
 
 use super::{Broken, Fiber, Params, SOUND};
 use hairis::model::{LobeEval, Model, SampleLanes};
@@ -6,7 +6,7 @@ use hairis::simd::{Broadcast, Lanes, Scalar, Vec3x};
 use hairis::{Eval, Hit, LobeMask, PerLobe};
 use hairis_conformance::{Materials, Subject};
 
-/// The fibre.
+/// Fibre with a function that is not inlined.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slow;
 

@@ -1,4 +1,4 @@
-//! The fibre as a subject of the suite.
+//! Fibre as a subject of the suite.
 
 use super::{CONE, DIFFUSE, Fiber, Params};
 use hairis::{Hit, LobeMask};
@@ -6,7 +6,7 @@ use hairis_conformance::proptest::array::uniform3;
 use hairis_conformance::proptest::prelude::*;
 use hairis_conformance::{AnyMaterial, Claims, Materials, Subject, strategies};
 
-/// The fibre with this fault, as its author would test it.
+/// Fibre with this fault, as its author would test it.
 pub(crate) struct Broken(pub(crate) u32);
 
 impl Subject for Broken {
@@ -98,7 +98,8 @@ impl Subject for Broken {
         }
     }
 
-    /// Lobe by lobe the weight is `4 kd cos / (pi p)`, or `ks cos span / (pi p)`, where `span <= pi`: `p` is the lobe's share.
+    /// Returns the largest bound of a lobe, whose weight is `4 kd cos / (pi p)` or `ks cos span / (pi p)`, where `span <= pi` and `p` is
+    /// the lobe's share.
     fn weight_bound(&self, params: &Params, _hit: &Hit, lobes: LobeMask) -> Option<f64> {
         let sum = |color: [f32; 3]| color.iter().map(|x| f64::from(*x)).sum::<f64>();
         let most = |color: [f32; 3]| f64::from(color.into_iter().fold(0.0, f32::max));

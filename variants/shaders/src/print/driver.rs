@@ -1,22 +1,21 @@
-//! Entry points that run functions over arrays of numbers.
+//! Entry points that run functions of a program over arrays of numbers.
 
 use super::{Language, prefix, type_name};
 use crate::function::{Argument, Function};
 use crate::program::Program;
 use crate::record::Field;
 
-/// Entry points for the functions of a program, to follow [`print`](super::print) in one file. Each reads an array of floats,
-/// the arguments of one call after the other, and writes one of the results.
+/// Returns the entry points for the functions of a program, to follow the text of [`print`](super::print) in one file. Each entry point
+/// reads an array of floats, which holds the arguments of one call after the other, and writes an array of the results.
 ///
-/// - WGSL: a compute shader per function, by the function's name, over buffers 0 (read) and 1 (written) of group 0;
-///   workgroups of 64.
+/// - WGSL: a compute shader per function, by the function's name, over buffers 0 (read) and 1 (written) of group 0; workgroups of 64.
 /// - GLSL: `main` of the last function alone, over the same buffers of a Vulkan shader.
-/// - C: `main` takes the name of a function, reads standard input and writes standard output. Compiled as CUDA, it runs the
-///   function on the GPU, one thread per call.
+/// - C: `main` takes the name of a function, reads standard input and writes standard output. Compiled as CUDA, it runs the function on
+///   the GPU, one thread per call.
 ///
 /// # Panics
 ///
-/// If there is none for the language.
+/// Panics for HLSL and Metal, which have no driver, and for GLSL if the program has no function.
 #[must_use]
 pub fn driver(program: &Program, language: Language) -> String {
     match language {
@@ -27,7 +26,7 @@ pub fn driver(program: &Program, language: Language) -> String {
     }
 }
 
-/// Statements that read the arguments from `i * count` on, call the function, and write its result.
+/// Returns statements that read the arguments from `i * count` on, call the function, and write its result.
 fn statements(program: &Program, language: Language, function: &Function) -> Vec<String> {
     let mut lines = Vec::new();
     let mut from = 0;
@@ -100,7 +99,7 @@ fn glsl(program: &Program) -> String {
     )
 }
 
-/// Ways to run a function over all calls: threads of a GPU, one per call, or a loop.
+/// Macros that run a function over all calls: on threads of a GPU, one per call, or in a loop.
 const C_HEAD: &str = "\
 #include <stdio.h>
 #include <stdlib.h>

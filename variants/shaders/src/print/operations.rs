@@ -1,24 +1,24 @@
-//! Table of operations per language. In a template `$a`, `$b` and `$c` are the operands, and `$p` begins the names of the
-//! model's helpers.
+//! Table of operations per language. In a template, `$a`, `$b` and `$c` stand for the operands, and `$p` for the prefix of the names of
+//! the model's helpers.
 
 use super::Language;
 use hairis::simd::trace::Op;
 
-/// Knowledge of the operands.
+/// Form of the operands of an operation, where a language needs another template for it.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Form {
-    /// Nothing.
+    /// No property of the operands is known.
     Any,
-    /// The operand at this place is a constant from 2^23 on. A sum with it rounds to an integer, which compilers undo that take sums
-    /// apart: `magic - (magic + x)` becomes `-x`, and every bell is up to `sqrt(2)` off.
+    /// The operand at this place is a constant from 2^23 on, so that a sum with it rounds to an integer. Compilers that reassociate sums
+    /// undo the rounding: `magic - (magic + x)` becomes `-x`, and every bell is up to `sqrt(2)` off.
     Rounds(usize),
-    /// A comparison with infinity, of which WGSL has none, and which fast arithmetic takes for true.
+    /// A comparison with infinity: WGSL has no literal for it, and fast arithmetic takes such a comparison for true.
     BelowInfinity,
-    /// The second operand is a constant, and so no NaN.
+    /// The second operand is a constant, and therefore not NaN.
     Limit,
 }
 
-/// Template of an operation.
+/// Returns the template of an operation.
 pub(super) fn template(language: Language, op: Op, form: Form) -> &'static str {
     use Language::{C, Glsl, Hlsl, Msl, Wgsl};
     if language.takes_sums_apart()
@@ -44,7 +44,7 @@ pub(super) fn template(language: Language, op: Op, form: Form) -> &'static str {
         (_, Op::Div) => "$a / $b",
         (_, Op::Neg) => "-$a",
         (C, Op::MulAdd) => "fmaf($a, $b, $c)",
-        // That of doubles alone is named fma.
+        // HLSL's `fma` takes only doubles.
         (Hlsl, Op::MulAdd) => "mad($a, $b, $c)",
         (_, Op::MulAdd) => "fma($a, $b, $c)",
         (C, Op::Exp2) => "exp2f($a)",
@@ -56,8 +56,8 @@ pub(super) fn template(language: Language, op: Op, form: Form) -> &'static str {
         (_, Op::Sqrt) => "sqrt($a)",
         (C, Op::Abs) => "fabsf($a)",
         (_, Op::Abs) => "abs($a)",
-        // Never those of the language: which operand they return for NaN is open. A GPU has them as one instruction, which returns
-        // the number where the other is NaN, and drivers take it for a choice by a comparison, too.
+        // Not the functions of the language, which leave open which operand they return for NaN. A GPU has them as one instruction, which
+        // returns the other operand if one is NaN. Drivers also use this instruction for a choice by a comparison.
         (Wgsl, Op::Min) if form == Form::Limit => "select($b, $a, $a < $b)",
         (Wgsl, Op::Max) if form == Form::Limit => "select($b, $a, $a > $b)",
         (Glsl | Hlsl | Msl, Op::Min) if form == Form::Limit => "$a < $b ? $a : $b",
@@ -82,7 +82,7 @@ pub(super) fn template(language: Language, op: Op, form: Form) -> &'static str {
     }
 }
 
-/// A template with its operands.
+/// Returns a template filled in with its operands.
 pub(super) fn write_template(template: &str, prefix: &str, operands: &[String]) -> String {
     let mut text = template.replace("$p", prefix);
     for (name, operand) in ["$a", "$b", "$c"].iter().zip(operands) {

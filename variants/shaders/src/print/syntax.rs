@@ -1,4 +1,4 @@
-//! Text before the functions of a program: comments, and the operations that a language lacks.
+//! Text before the functions of a program: comments, and helpers for the operations that a language lacks.
 
 use super::{Language, prefix};
 use crate::call::Target;
@@ -96,13 +96,14 @@ using namespace metal;
 #endif
 ";
 
-/// Choices of C, whose compilers keep NaN.
+/// Choices of C, whose compilers preserve NaN.
 const CHOICES_C: &str = "\
 // The second operand where either is NaN.
 HAIRIS_FN float $pmin(float a, float b) { return a < b ? a : b; }
 HAIRIS_FN float $pmax(float a, float b) { return a > b ? a : b; }
 ";
-/// Choices where drivers may take a comparison with NaN for true, and a choice by a comparison for an instruction that loses NaN.
+/// Choices for languages whose drivers may take a comparison with NaN for true, and turn a choice by a comparison into an instruction
+/// that loses NaN.
 const CHOICES: &str = "\
 HAIRIS_FN HAIRIS_MASK $pis_number(float a) { return (HAIRIS_BITS(a) & 0x7fffffffu) <= 0x7f800000u; }
 // The second operand where either is NaN.
@@ -110,7 +111,7 @@ HAIRIS_FN float $pmin(float a, float b) { return $pis_number(b) ? (a < b ? a : b
 HAIRIS_FN float $pmax(float a, float b) { return $pis_number(b) ? (a > b ? a : b) : b; }
 ";
 
-/// Operations of languages that look like C, on top of those names.
+/// Operations of languages that look like C, in terms of the names above.
 const LIKE_C: &str = "\
 HAIRIS_FN float $ptimes_sign(float a, float b) {
     return HAIRIS_NUMBER(HAIRIS_BITS(a) ^ (HAIRIS_BITS(b) & 0x80000000u));
@@ -157,7 +158,7 @@ fn $pis_below_infinity(a: f32) -> bool {
 
 ";
 
-/// Comments on the language and the target.
+/// Returns the comments on the language and the target.
 fn notes(language: Language, target: Target) -> String {
     let bits = match target {
         Target::Exact => {
@@ -188,7 +189,7 @@ fn notes(language: Language, target: Target) -> String {
     format!("// {language}\n// {bits}\n")
 }
 
-/// Comments, and operations that the language lacks.
+/// Returns the text before the functions: comments, and the operations that the language lacks.
 pub(super) fn head(program: &Program, language: Language) -> String {
     let prefix = prefix(program);
     let (name, layout) = (program.name(), program.layout());

@@ -1,6 +1,6 @@
-//! Inversion of cumulative sums by tables of where to search.
+//! Inversion of cumulative sums, with guide tables that say where to begin the search.
 
-/// The cell of [0, 1] cut in `n` that holds `x`.
+/// Returns the index of the cell that contains `x`, among `n` equal cells of [0, 1].
 pub(super) fn cell(x: f64, n: usize) -> usize {
     #[expect(
         clippy::cast_possible_truncation,
@@ -11,8 +11,9 @@ pub(super) fn cell(x: f64, n: usize) -> usize {
     i.min(n - 1)
 }
 
-/// For each of as many equal parts of the total as there are indices, the index that the part begins in: a search that starts there takes a step or two, on
-/// average, where bisection takes a dozen. The inversion stays monotone, unlike that of alias tables, so that stratified numbers stay stratified.
+/// Returns the guide table: the total is divided into as many equal parts as there are indices, and each part gets the index in which
+/// it begins. A search that starts at that index takes a step or two on average, where bisection takes a dozen. The inversion stays
+/// monotone, unlike that of alias tables, so that stratified numbers stay stratified.
 pub(super) fn guide(cumulative: &[f64]) -> impl Iterator<Item = u32> + '_ {
     let (parts, total) = (cumulative.len(), cumulative.last().copied().unwrap_or(0.0));
     let mut index = 0;
@@ -24,12 +25,13 @@ pub(super) fn guide(cumulative: &[f64]) -> impl Iterator<Item = u32> + '_ {
     })
 }
 
-/// Draws an index from a cumulative sum, and what is left of `xi` in [0, 1). Indices of no weight are never drawn while some have weight.
+/// Draws an index from a cumulative sum, and returns it with the remainder of `xi`, rescaled to [0, 1]. Indices of no weight are never
+/// drawn while some index has weight.
 ///
-/// `start` is where the guide says to begin, and the sum there.
+/// `start` is the index from the guide table, with the cumulative sum at that index.
 pub(super) fn search(cumulative: &[f64], total: f64, start: (usize, f64), xi: f64) -> (usize, f64) {
     let last = cumulative.len() - 1;
-    // Strictly below the total, or rounding could fall off the end into indices of no weight.
+    // Strictly below the total, because rounding could otherwise fall off the end into indices of no weight.
     let target = (xi * total).min(total * (1.0 - f64::EPSILON / 2.0));
     let (mut index, sum) = start;
     if sum > target {

@@ -1,14 +1,14 @@
-//! Places of eight directions on a map.
+//! Places of eight directions on an environment map, in single precision.
 
 use hairis::Vec3x8;
 use hairis::model::math::atan2_upper;
 use hairis::simd::{Broadcast, Kernel, Lanes};
 use wide::f32x8;
 
-/// Places nearer to an edge than this share of the count of texels are found in double precision.
+/// Distance from an edge, as a share of the count of texels, below which a place is computed again in double precision.
 const DOUBT: f32 = 6e-7;
 
-/// Rows and columns of eight directions in texels: the whole part is the index.
+/// Kernel that computes the rows and columns of eight directions in texels; the integer part is the index.
 pub(super) struct Places<'a> {
     pub(super) dir: &'a Vec3x8,
     /// Counts of rows and columns.
@@ -31,7 +31,8 @@ impl Kernel for Places<'_> {
     }
 }
 
-/// Lanes, as bits, whose place among `texels` of them is within the error of single precision of an edge, or no number.
+/// Returns the lanes, as bits, whose place cannot be trusted: those nearer to an edge between `texels` texels than the error of single
+/// precision, and those that are NaN.
 ///
 /// - Accuracy: places err by less than `3e-7 texels`, half of it in the angles.
 pub(super) fn in_doubt(place: f32x8, texels: f32) -> u32 {

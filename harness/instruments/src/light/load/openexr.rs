@@ -1,4 +1,4 @@
-//! `OpenEXR`: the pixels of a layer.
+//! Reader of `OpenEXR` files: the pixels of one layer, converted to Rec. 709.
 
 mod layers;
 
@@ -17,7 +17,7 @@ use exr::prelude::f16;
 use layers::{Colour, Layer, choose, find_layers, listed};
 use std::io::{BufRead, Seek};
 
-/// Reads a map.
+/// Reads the map of the chosen layer.
 pub(super) fn read(mut file: impl BufRead + Seek, layer: Option<&str>) -> Result<Map, String> {
     let mut start = [0; 8];
     file.read_exact(&mut start)
@@ -41,7 +41,7 @@ pub(super) fn read(mut file: impl BufRead + Seek, layer: Option<&str>) -> Result
 
 const DEEP: &str = "unsupported: deep data; flatten the file first";
 
-/// The message of an error.
+/// Returns the message of an error of the decoder.
 fn refusal(error: Error) -> String {
     match error {
         Error::NotSupported(problem) => format!("unsupported: {}", line(&problem)),
@@ -50,9 +50,9 @@ fn refusal(error: Error) -> String {
     }
 }
 
-/// Refuses by name what is valid in a file, and not read here.
+/// Rejects, by name, features that are valid in a file but not supported here.
 fn check_support(headers: &[Header], part: usize) -> Result<(), String> {
-    // The decoder refuses the whole file for one part or channel.
+    // The decoder rejects the whole file because of one part or channel.
     if headers.iter().any(|header| header.deep) {
         return Err(DEEP.to_owned());
     }
@@ -75,7 +75,7 @@ fn check_support(headers: &[Header], part: usize) -> Result<(), String> {
     if headers[part].own_attributes.environment_map == Some(EnvironmentMap::Cube) {
         return Err("unsupported: a cube map; convert it to latitude-longitude".to_owned());
     }
-    // The crate takes an attribute of another type for one of the program that wrote the file.
+    // The crate files an attribute of another type under the attributes of the program that wrote the file.
     let mut others = headers
         .iter()
         .flat_map(|header| header.own_attributes.other.keys());
@@ -85,7 +85,7 @@ fn check_support(headers: &[Header], part: usize) -> Result<(), String> {
     Ok(())
 }
 
-/// The pixels of the display window: black where the data window ends.
+/// Reads the pixels of the display window, which are black outside the data window.
 fn pixels(file: impl BufRead + Seek, header: &Header, layer: &Layer) -> Result<Map, String> {
     let (display, data) = (
         header.shared_attributes.display_window,
@@ -93,7 +93,7 @@ fn pixels(file: impl BufRead + Seek, header: &Header, layer: &Layer) -> Result<M
     );
     let size = checked([display.size.width(), display.size.height()])?;
     let data_size = checked([data.size.width(), data.size.height()])?;
-    // The data window's upper left corner in the display window.
+    // Position of the data window's upper left corner in the display window.
     let offset = [
         i64::from(data.position.x()) - i64::from(display.position.x()),
         i64::from(data.position.y()) - i64::from(display.position.y()),
@@ -130,7 +130,7 @@ fn pixels(file: impl BufRead + Seek, header: &Header, layer: &Layer) -> Result<M
     Ok(map)
 }
 
-/// Takes the samples of a line, if they are of the layer and within the display window.
+/// Stores the samples of a line, if they belong to the layer and lie within the display window.
 fn take(
     map: &mut Map,
     offset: [i64; 2],
@@ -159,7 +159,7 @@ fn take(
         let sample = sample?;
         let column = usize::try_from((x + k) as i64 + offset[0]).unwrap_or(usize::MAX);
         if let Some(pixel) = row.get_mut(column) {
-            // Luminance is in all three.
+            // A luminance channel is stored in all three channels of the pixel.
             for (number, its_channel) in pixel.iter_mut().zip(layer.channels) {
                 if its_channel == channel {
                     *number = sample;
@@ -170,9 +170,9 @@ fn take(
     Ok(())
 }
 
-/// Makes Rec. 709 of the channels.
+/// Converts the channels of the layer to RGB with the Rec. 709 primaries.
 fn convert(map: &mut Map, headers: &[Header], layer: &Layer) -> Result<(), String> {
-    // Files may have attributes of all parts in the first alone.
+    // Files may store the attributes of all parts in the first part alone.
     let chromaticities = [layer.part, 0]
         .iter()
         .find_map(|part| headers[*part].shared_attributes.chromaticities);
@@ -207,7 +207,7 @@ fn convert(map: &mut Map, headers: &[Header], layer: &Layer) -> Result<(), Strin
     Ok(())
 }
 
-/// Chromaticities of the attribute.
+/// Converts the attribute to primaries in double precision.
 fn primaries(attribute: Chromaticities) -> Primaries {
     let Chromaticities {
         red,

@@ -1,9 +1,9 @@
-//! Primaries of RGB colours.
+//! Primaries of RGB colours, and the matrices between colour spaces.
 
 use core::fmt;
 use glam::{DMat3, DVec3};
 
-/// Largest difference of two chromaticities that are the same but for rounding.
+/// Largest difference of two chromaticities that count as equal but for rounding.
 const SAME: f64 = 5e-4;
 
 /// CIE chromaticities x and y of red, green, blue and white.
@@ -15,10 +15,10 @@ impl Primaries {
     pub(super) const REC_709: Self =
         Self([[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]]);
 
-    /// The matrix from RGB to XYZ, with a luminance of 1 for white.
+    /// Returns the matrix from RGB to XYZ, in which white has a luminance of 1.
     ///
     /// # Errors
-    /// A message if the primaries span no colours, or white is none of these.
+    /// Returns a message if the primaries span no colours, or white lies outside the colours that they span.
     pub(super) fn to_xyz(self) -> Result<DMat3, String> {
         let xyz = |[x, y]: [f64; 2]| DVec3::new(x, y, 1.0 - x - y);
         let [red, green, blue, white] = self.0.map(xyz);
@@ -35,11 +35,11 @@ impl Primaries {
         Ok(directions * DMat3::from_diagonal(amounts))
     }
 
-    /// The matrix to RGB with the Rec. 709 primaries; `None` if these are the primaries already. Tristimulus values stay the
+    /// Returns the matrix to RGB with the Rec. 709 primaries, or `None` if these are the primaries already. Tristimulus values stay the
     /// same, so white becomes another colour unless it is that of Rec. 709.
     ///
     /// # Errors
-    /// See [`to_xyz`](Self::to_xyz).
+    /// Returns the errors of [`to_xyz`](Self::to_xyz).
     pub(super) fn to_rec_709(self) -> Result<Option<DMat3>, String> {
         let to_xyz = self.to_xyz()?;
         let pairs = self
@@ -54,7 +54,7 @@ impl Primaries {
     }
 }
 
-/// The matrix from XYZ to RGB with the Rec. 709 primaries.
+/// Returns the matrix from XYZ to RGB with the Rec. 709 primaries.
 pub(super) fn xyz_to_rec_709() -> DMat3 {
     Primaries::REC_709
         .to_xyz()

@@ -1,4 +1,4 @@
-//! Radiance HDR: the header, which is read here in full, and pixels, which the crate `image` decodes.
+//! Reader of Radiance HDR files. The whole header is read here, and the crate `image` decodes the pixels.
 
 use super::primaries::{Primaries, xyz_to_rec_709};
 use super::{Map, checked, damaged, excerpt, line};
@@ -7,10 +7,10 @@ use image::codecs::hdr::HdrDecoder;
 use image::{DynamicImage, ImageError};
 use std::io::{BufRead, ErrorKind, Read as _};
 
-/// Headers are at most this long, in bytes.
+/// Length of the longest header that is read, in bytes.
 const LONGEST_HEADER: u64 = 1 << 20;
 
-/// Reads a map.
+/// Reads the map of a file.
 pub(super) fn read(mut file: impl BufRead) -> Result<Map, String> {
     let header = Header::read(&mut file.by_ref().take(LONGEST_HEADER))?;
     let [lines, length] = header.scan.map(|axis| axis.length);
@@ -19,7 +19,7 @@ pub(super) fn read(mut file: impl BufRead) -> Result<Map, String> {
         pixels: Vec::new(),
         remarks: Vec::new(),
     };
-    // The crate knows one signature, one order and one format, whose bytes are those of all.
+    // The crate accepts one signature, one order of pixels and one format, but all formats have the same bytes.
     let plain = format!("#?RADIANCE\n\n-Y {lines} +X {length}\n");
     let scanned = HdrDecoder::new(plain.as_bytes().chain(file))
         .and_then(DynamicImage::from_decoder)
@@ -57,23 +57,23 @@ pub(super) fn read(mut file: impl BufRead) -> Result<Map, String> {
     Ok(map)
 }
 
-/// One axis of the order in which pixels are stored.
+/// Axis of the order in which pixels are stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Axis {
     is_x: bool,
-    /// Whether it runs to the left or to the top.
+    /// Whether the axis runs to the left or to the top.
     is_backward: bool,
     length: usize,
 }
 
-/// Statements of a header about pixels.
+/// Statements of a header that concern the pixels.
 #[derive(Debug, PartialEq)]
 struct Header {
     is_xyz: bool,
     primaries: Primaries,
-    /// Pixels over these are radiances.
+    /// Divisors that turn the pixels into radiances.
     divisor: [f64; 3],
-    /// From one scan line to the next, and along a scan line.
+    /// Axes from one scan line to the next, and along a scan line.
     scan: [Axis; 2],
 }
 
@@ -92,7 +92,7 @@ impl Header {
         let mut is_first = true;
         loop {
             let text = next_line(file)?;
-            // Indented lines belong to pictures that this one was made from.
+            // Indented lines belong to pictures from which this one was made.
             match text.split_once('=') {
                 _ if is_first || text.starts_with('#') => {}
                 _ if text.is_empty() => break,
@@ -106,7 +106,7 @@ impl Header {
         Ok(header)
     }
 
-    /// Takes a line of the header.
+    /// Applies a line of the header, and ignores unknown keys.
     fn take(&mut self, key: &str, value: &str) -> Result<(), String> {
         match key {
             "FORMAT" => match value {
@@ -139,7 +139,7 @@ impl Header {
         Ok(())
     }
 
-    /// Width and height.
+    /// Returns the width and the height of the picture.
     fn size(&self) -> [usize; 2] {
         let [lines, along] = self.scan;
         if along.is_x {
@@ -149,7 +149,7 @@ impl Header {
         }
     }
 
-    /// The place, row by row from the upper left corner, of the `k`th stored pixel.
+    /// Returns the index of the `k`th stored pixel, counted row by row from the upper left corner.
     fn place(&self, k: usize) -> usize {
         let [lines, along] = self.scan;
         let step = |axis: Axis, k: usize| {
@@ -168,7 +168,7 @@ impl Header {
     }
 }
 
-/// The next line without its end.
+/// Reads the next line and strips its end.
 fn next_line(file: &mut impl BufRead) -> Result<String, String> {
     let mut bytes = Vec::new();
     file.read_until(b'\n', &mut bytes)
@@ -180,7 +180,7 @@ fn next_line(file: &mut impl BufRead) -> Result<String, String> {
     Ok(text.strip_suffix('\r').unwrap_or(&text).to_owned())
 }
 
-/// The order of pixels and the size, such as `-Y 512 +X 1024`: both axes with their directions, y upwards.
+/// Parses the order of pixels and the size, such as `-Y 512 +X 1024`: both axes with their directions, where y points upwards.
 fn scan(text: &str) -> Result<[Axis; 2], String> {
     let axis = |name: &str, length: &str| {
         let is_x = name.ends_with('X');
@@ -208,7 +208,7 @@ fn scan(text: &str) -> Result<[Axis; 2], String> {
     )))
 }
 
-/// `N` finite numbers above `least` in a line of the header.
+/// Parses `N` finite numbers above `least` from a line of the header.
 fn numbers<const N: usize>(key: &str, value: &str, least: f64) -> Result<[f64; N], String> {
     let number = |word: &str| {
         word.parse()

@@ -1,4 +1,4 @@
-//! Orientation, repairs and degenerate maps.
+//! Tests of the orientation of environment maps, of repairs, and of degenerate maps.
 
 use super::*;
 
@@ -18,7 +18,7 @@ fn rows_run_from_the_zenith_and_columns_from_behind() {
         [1.0, 2.0, 3.0, 4.0]
     );
     assert_eq!([value(-0.1, -1.0, 0.2), value(0.1, -1.0, -0.2)], [5.0, 7.0]);
-    // Poles, the seam and a direction that is none give a texel, not a panic.
+    // The poles, the seam and a vector without direction lead to a texel, not to a panic.
     for d in [
         DVec3::Y,
         -DVec3::Y,
@@ -104,7 +104,7 @@ fn sky_estimates_match_its_sum() {
     }
 }
 
-/// Radiance and density of a direction of single precision, as bits.
+/// Returns radiance and density, rounded to single precision, as bits.
 fn bits(radiance: [f64; 3], pdf: f64) -> [u32; 4] {
     let [r, g, b] = radiance;
     [r, g, b, pdf].map(|x| rounded(x).to_bits())
@@ -127,7 +127,7 @@ fn eight_lanes_find_the_texels_of_one() {
         let mut dirs: Vec<DVec3> = (0..40_000)
             .map(|_| Constant.sample(xi.next_xi()).dir)
             .collect();
-        // Corners of texels, rounded to either side; meridians and parallels; the poles, and what is next to them.
+        // Corners of texels, rounded to either side; meridians and parallels; the poles and their neighbourhood.
         for k in 0..20_000 {
             let [a, b] = xi.next_xi::<2>();
             let whole = |x: f64, n: usize| {

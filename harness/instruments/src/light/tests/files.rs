@@ -1,4 +1,4 @@
-//! Files: written here, read back, cut short, renamed and missing.
+//! Tests of files that are written here, read back, cut short, renamed and missing.
 
 use super::*;
 use image::{ImageFormat, Rgb32FImage, Rgba32FImage};
@@ -12,7 +12,7 @@ fn texel(x: u32, y: u32) -> [f32; 3] {
     [(1 + x) as f32, 0.5 * (1 + y) as f32, 0.25]
 }
 
-/// A 16 x 8 map, as Radiance HDR or `OpenEXR` by the ending of `name`.
+/// Writes a map of 16 x 8 texels, as Radiance HDR or `OpenEXR` by the ending of `name`.
 fn write(dir: &Path, name: &str) -> PathBuf {
     let path = dir.join(name);
     let map = Rgb32FImage::from_fn(16, 8, |x, y| image::Rgb(texel(x, y)));
@@ -44,7 +44,7 @@ fn both_formats_read_back() {
                 theta.cos(),
                 -theta.sin() * phi.cos(),
             ));
-            // Eight bits of mantissa shared by the channels: half a step of the largest.
+            // The channels share an exponent and have eight bits of mantissa each: the error is half a step of the largest.
             let bound = if name.ends_with("hdr") {
                 16.0 / 128.0
             } else {
@@ -147,7 +147,7 @@ fn every_cut_is_an_error_and_no_panic() {
 
 #[test]
 fn damaged_bytes_never_panic() {
-    // One byte at a time set to 0, to 255 and to its complement: whatever loads must still be a light.
+    // One byte at a time is set to 0, to 255 and to its complement: whatever loads must still be a valid light.
     let dir = directory();
     for name in ["map.hdr", "map.exr"] {
         let bytes = std::fs::read(write(dir.path(), name)).expect("read");

@@ -1,4 +1,4 @@
-//! `OpenEXR` maps as compositors and renderers write them: layers, windows, primaries.
+//! Tests of `OpenEXR` maps as compositors and renderers write them: layers, windows, primaries.
 
 use super::files::directory;
 use super::*;
@@ -41,7 +41,7 @@ fn channel(name: &str, samples: FlatSamples) -> Channel {
     AnyChannel::new(Text::from_slice_unchecked(name.as_bytes()), samples)
 }
 
-/// A channel whose samples are `value` plus 10 times the row plus the column.
+/// Returns a channel whose samples are `value` plus 10 times the row plus the column.
 fn ramp(name: &str, value: f32) -> Channel {
     let [width, height] = SIZE;
     let sample = |k: usize| value + (10 * (k / width) + k % width) as f32;
@@ -55,7 +55,7 @@ fn flat(name: &str, value: f32) -> Channel {
     channel(name, FlatSamples::F32(vec![value; SIZE[0] * SIZE[1]]))
 }
 
-/// Channels R, G and B after a prefix: layers differ by `value`.
+/// Returns channels R, G and B with a prefix; layers differ by `value`.
 fn rgb(prefix: &str, value: f32) -> Vec<Channel> {
     let names = ["R", "G", "B"].into_iter().zip([0.0, 100.0, 200.0]);
     names
@@ -63,7 +63,7 @@ fn rgb(prefix: &str, value: f32) -> Vec<Channel> {
         .collect()
 }
 
-/// Channels of one value each.
+/// Returns channels that have one value each.
 fn flats<const N: usize>(names: [&str; N], values: [f32; N]) -> Vec<Channel> {
     names
         .into_iter()
@@ -134,7 +134,7 @@ impl Files {
     }
 }
 
-/// The map of a file, and its notes.
+/// Loads the map of a file, with its notes.
 fn load(path: &Path, layer: Option<&str>) -> Result<(Environment, Vec<String>), String> {
     let map = Environment::load_layer(path, layer).map_err(|error| error.to_string())?;
     let notes = map.notes();
@@ -162,7 +162,7 @@ fn near(got: [f64; 3], want: [f64; 3], bound: f64) {
     assert!(is_near, "{got:?}, expected {want:?}");
 }
 
-/// The colour of a map of one colour.
+/// Returns the colour of a map that has one colour.
 fn colour(map: &Environment) -> [f64; 3] {
     map.radiance(DVec3::new(0.3, -0.5, 0.7))
 }
@@ -259,7 +259,7 @@ fn luminance_and_chroma_are_converted() {
     let channels = flats(["RY", "Y", "BY"], [rgb[0] / y - 1.0, y, rgb[2] / y - 1.0]);
     let (map, _) = load(&files.one(channels), None).expect("chroma");
     near(colour(&map), rgb.map(f64::from), 1e-6);
-    // Two by two pixels share a number of the chroma channels.
+    // Each block of two by two pixels shares a number of the chroma channels.
     let mut channel = b"BY\0\x02\0\0\0\x01\0\0\0\x01\0\0\0\x01\0\0\0".to_vec();
     let full = channel.clone();
     (channel[11], channel[15]) = (2, 2);
@@ -336,7 +336,7 @@ fn the_display_window_is_the_map() {
 fn primaries_are_converted_to_rec_709() {
     let files = Files::new();
     let names = ["R", "G", "B"];
-    // White of D60 keeps its chromaticity, and so does that of other primaries with D65.
+    // A white of D60 keeps its chromaticity, and so does the white of other primaries with D65.
     for (primaries, rgb, want) in [
         (AP1, [0.299, 0.467, 0.345], [0.207, 0.488, 0.302]),
         (AP1, [1.0; 3], [1.047, 0.994, 0.915]),

@@ -1,20 +1,20 @@
-//! Radiance HDR as programs write it: signatures, exposures, orders of pixels, runs.
+//! Tests of Radiance HDR as programs write it: signatures, exposures, orders of pixels, runs.
 
 use super::files::directory;
 use super::*;
 
-/// A pixel of a 4 x 2 map: mantissas and the exponent, for twice the mantissas.
+/// Returns a pixel of a map of 4 x 2 texels: three mantissas, and an exponent that doubles them.
 fn bytes(x: u8, y: u8) -> [u8; 4] {
     [200, 10 * x, 100 + 10 * y, 137]
 }
 
-/// Radiance of that pixel.
+/// Returns the radiance of the pixel whose [`bytes`] are written.
 fn radiance(x: u8, y: u8) -> [f64; 3] {
     let [r, g, b, _] = bytes(x, y);
     [r, g, b].map(|mantissa| 2.0 * f64::from(mantissa))
 }
 
-/// Pixels row by row from the upper left corner.
+/// Returns the bytes of all pixels, row by row from the upper left corner.
 fn rows() -> Vec<u8> {
     (0..2)
         .flat_map(|y| (0..4).flat_map(move |x| bytes(x, y)))
@@ -37,7 +37,7 @@ fn texel(map: &Environment, x: u8, y: u8) -> [f64; 3] {
     map.radiance(polar.sin() * across + polar.cos() * DVec3::Y)
 }
 
-/// The map of a header before the resolution.
+/// Loads a map whose header has these `lines` before the resolution.
 fn with(lines: &str) -> Result<(Environment, Vec<String>), String> {
     load(&format!("{lines}\n\n-Y 2 +X 4\n"), &rows())
 }
@@ -146,7 +146,7 @@ fn all_orders_of_pixels_are_turned() {
 
 #[test]
 fn runs_of_both_kinds_are_read() {
-    // A row of one colour: a pixel and how often it is repeated; and by component.
+    // A row of one colour, written as a pixel with its number of repetitions, and by component.
     let [r, g, b, e] = bytes(1, 1);
     let old = [r, g, b, e, 1, 1, 1, 3].repeat(2);
     let component = |byte| [128 + 4, byte];

@@ -1,4 +1,4 @@
-//! The line that tells runs apart.
+//! Description of a run, by which runs with different settings are told apart.
 
 use crate::args::{Place, Render, Size};
 use crate::cmd::place::Ground;
@@ -7,8 +7,8 @@ use crate::part::build;
 use crate::transport::Settings;
 use hairis_instruments::light::Environment;
 
-/// Everything that the sums of a picture depend on, but for the count of samples and the shard: parts of equal lines may be
-/// continued and joined. `hair` is what it depends on of the hair.
+/// Returns a line of everything that the sums of a picture depend on, except the count of samples and the shard. Parts with equal
+/// lines may be continued and joined. `hair` describes what the sums depend on of the hair.
 pub(super) fn describe(
     flags: &Render,
     hair: &str,
@@ -16,11 +16,11 @@ pub(super) fn describe(
     crop: Crop,
     ground: &Ground,
 ) -> String {
-    // Without `..`: whoever adds a flag decides whether it shapes the sums.
+    // Without `..`, so that each new flag needs a decision whether the sums depend on it.
     let Render {
         place,
         size: Size([columns, rows]),
-        // In the hair, the settings, the crop and the environment.
+        // Described by the hair, the settings, the crop and the environment.
         looks: _,
         energy: _,
         integrator: _,
@@ -31,7 +31,7 @@ pub(super) fn describe(
         aa: _,
         seed: _,
         crop: _,
-        // How much is rendered, what else is done, and where files lie.
+        // Without influence on the sums: how much is rendered, what else is done, and where files lie.
         spp: _,
         time: _,
         shard: _,
@@ -55,7 +55,7 @@ pub(super) fn describe(
         backdrop,
         rectangles,
         meet,
-        // In the digests of what was read.
+        // Described by the digests of the files that were read.
         import: _,
         head: _,
         env: _,
@@ -95,7 +95,7 @@ pub(super) fn describe(
     words.join(" ")
 }
 
-/// Width and height of the whole picture, out of the line that [`describe`] makes.
+/// Parses the width and height of the whole picture from the line that [`describe`] returns.
 pub(crate) fn picture_size(run: &str) -> Option<[u32; 2]> {
     let size = run
         .split_whitespace()

@@ -5,20 +5,20 @@ use super::{Groom, HEAD};
 use core::f32::consts::TAU;
 use glam::Vec3;
 
-/// The part of the height of the ellipsoid that has hair, from above.
+/// Share of the height of the ellipsoid, from the top, that has hair.
 const COVERED: f32 = 0.625;
-/// Strands stay outside the ellipsoid times this.
+/// Factor on the ellipsoid outside of which strands stay.
 const CLEARANCE: f32 = 1.02;
-/// Strands that are combed lie in layers up to this part of the ellipsoid above that.
+/// Depth of the layers of combed strands above that, relative to the ellipsoid.
 const DEPTH: f32 = 0.06;
-/// Parting of combed strands, as x on the unit sphere: strands fall to either side.
+/// Parting of combed strands, as x on the unit sphere; strands fall to either side.
 const PARTING: f32 = 0.25;
-/// How far guides are longer than strands.
+/// Length of guides, relative to that of strands.
 const GUIDE_LENGTH: f32 = 1.05;
-/// pi (3 - sqrt 5): successive roots are this far apart in azimuth, which spreads them evenly.
+/// Azimuth between successive roots, pi (3 - sqrt 5), which spreads the roots evenly.
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
-/// Clumps, ready for strands to be grown.
+/// Clumps of a head of hair, ready for strands to be grown.
 #[derive(Clone, Debug)]
 pub(super) struct HeadGroom {
     groom: Groom,
@@ -27,7 +27,7 @@ pub(super) struct HeadGroom {
 
 #[derive(Clone, Debug)]
 struct Clump {
-    /// The root on the unit sphere.
+    /// Root of the guide on the unit sphere.
     root: Vec3,
     guide: Vec<Vec3>,
     phase: f32,
@@ -59,14 +59,14 @@ impl HeadGroom {
         }
     }
 
-    /// The nodes of a strand.
+    /// Returns the nodes of a strand, from root to tip.
     pub(super) fn strand(&self, strand: usize) -> Vec<Vec3> {
         let groom = &self.groom;
         let mut random = Random::new(groom.seed, Stream::Strand(strand));
         let root = root(strand, groom.strands, &mut random);
         let length = groom.length * (1.0 + groom.length_spread * random.normal_cut());
         let clump = self.nearest(root);
-        // That of its clump: a strand drawn to a guide on the other side would go through the head.
+        // Use the side of the clump, because a strand drawn to a guide on the other side would go through the head.
         let mut nodes = fall(
             groom,
             root,
@@ -94,7 +94,7 @@ impl HeadGroom {
         nodes
     }
 
-    /// The clump with the nearest root. Roots go down in y with their number, so that few have to be looked at.
+    /// Finds the clump with the nearest root. Roots descend in y with their number, so that few of them are compared.
     fn nearest(&self, root: Vec3) -> &Clump {
         let below = self.clumps.partition_point(|clump| clump.root.y > root.y);
         let (upper, lower) = self.clumps.split_at(below);
@@ -116,7 +116,7 @@ impl HeadGroom {
     }
 }
 
-/// A root on the unit sphere: `index` of `count` on a golden spiral, jittered.
+/// Returns a root on the unit sphere: `index` of `count` on a golden spiral, jittered.
 fn root(index: usize, count: usize, random: &mut Random) -> Vec3 {
     let y = 1.0 - 2.0 * COVERED * (index as f32 + random.uniform()) / count as f32;
     #[expect(clippy::cast_possible_truncation, reason = "rounded to the nearest")]
@@ -129,12 +129,12 @@ fn root(index: usize, count: usize, random: &mut Random) -> Vec3 {
     )
 }
 
-/// The side of the parting to which combed hair falls: 1 or -1, along x.
+/// Returns the side of the parting to which combed hair falls: 1 or -1, along x.
 fn side(root: Vec3) -> f32 {
     (root.x - PARTING).signum()
 }
 
-/// Nodes of a strand that leaves the head along its normal, or combed, and bends down, round the head.
+/// Returns the nodes of a strand that leaves the head along its normal, or combed, and bends down around the head.
 fn fall(
     groom: &Groom,
     root: Vec3,

@@ -4,7 +4,7 @@ use core::f32::consts::TAU;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
-/// Purpose of a sequence of numbers: no two share numbers.
+/// Purpose of a sequence of random numbers; no two purposes share numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stream {
     /// A strand, by number.
@@ -13,7 +13,7 @@ pub(super) enum Stream {
     Clump(usize),
 }
 
-/// Random numbers of one strand or clump: they depend on the seed and its number alone.
+/// Random numbers of one strand or clump, which depend on the seed and on its number alone.
 #[derive(Clone, Debug)]
 pub(super) struct Random(ChaCha8Rng);
 
@@ -27,23 +27,23 @@ impl Random {
         Self(numbers)
     }
 
-    /// Uniform over `[0, 1)`.
+    /// Draws a number that is uniform over `[0, 1)`.
     pub(super) fn uniform(&mut self) -> f32 {
         (self.0.next_u32() >> 8) as f32 / (1 << 24) as f32
     }
 
-    /// A phase, uniform over `[0, 2 pi)`.
+    /// Draws a phase that is uniform over `[0, 2 pi)`.
     pub(super) fn phase(&mut self) -> f32 {
         TAU * self.uniform()
     }
 
-    /// Normal with deviation 1, by Box and Muller.
+    /// Draws a normal number with deviation 1, by the method of Box and Muller.
     pub(super) fn normal(&mut self) -> f32 {
         let radius = (-2.0 * libm::logf(1.0 - self.uniform())).sqrt();
         radius * libm::cosf(self.phase())
     }
 
-    /// [`normal`](Self::normal), cut at two deviations.
+    /// Draws a number as [`normal`](Self::normal) does, clamped at two deviations.
     pub(super) fn normal_cut(&mut self) -> f32 {
         self.normal().clamp(-2.0, 2.0)
     }

@@ -1,19 +1,19 @@
-//! Parallel strands: the scene of the shading points.
+//! Sheet of parallel strands, for the scene of the shading points.
 
 use super::Groom;
 use super::random::{Random, Stream};
 use glam::Vec3;
 
-/// Depth and width of the sheet in centimetres, and how far its middle is above the ends.
+/// Depth and width of the sheet in centimetres, and the height of its middle above the ends.
 const DEPTH: f32 = 1.0;
 const WIDTH: f32 = 12.0;
 const ARCH: f32 = 1.2;
-/// By how much roots differ along x, in centimetres.
+/// Range by which roots differ along x, in centimetres.
 const STAGGER: f32 = 2.0;
 /// Deviation of the amplitude of waves across, in centimetres.
 const WAVE: f32 = 0.05;
 
-/// The nodes of a strand.
+/// Returns the nodes of a strand, from root to tip.
 pub(super) fn strand(groom: &Groom, strand: usize) -> Vec<Vec3> {
     let mut random = Random::new(groom.seed, Stream::Strand(strand));
     let y = -DEPTH * random.uniform();

@@ -1,4 +1,4 @@
-//! Candidates of a shading point by column.
+//! Candidates of a shading point, stored by column.
 
 use super::cells::{CELLS, cells};
 use super::{Candidate, MOST};
@@ -8,11 +8,11 @@ use hairis::resample::{Counts, Partition, Weighed8, choose};
 use hairis::simd::f32x8;
 use hairis::{Eval8, Vec3x8};
 
-/// Cell of candidates without a weight, after all others.
+/// Cell of candidates without a weight, which comes after all others.
 #[expect(clippy::cast_possible_truncation, reason = "64")]
 const NO_WEIGHT: u8 = CELLS as u8;
 
-/// Columns of candidates.
+/// Columns of candidates, with their weights and cells.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::transport) struct Candidates {
     direction: [[f32; MOST]; 3],
@@ -22,7 +22,7 @@ pub(in crate::transport) struct Candidates {
     weighed: [[f32; MOST]; 4],
     cell: [u8; MOST],
     len: usize,
-    /// Candidates with a weight, cell by cell: their places, contributions and weights.
+    /// Candidates with a weight, cell by cell: their indices, contributions and weights.
     order: [u8; MOST],
     ordered: [[f32; MOST]; 4],
 }
@@ -44,7 +44,7 @@ impl Default for Candidates {
 }
 
 impl Candidates {
-    /// Forgets all.
+    /// Removes all candidates.
     pub(super) fn clear(&mut self) {
         self.len = 0;
     }
@@ -90,10 +90,10 @@ impl Candidates {
         self.len += limit.min(8) as usize;
     }
 
-    /// Candidates that are worth one of `rays` rays, and the radiance that each brings unless it is blocked.
+    /// Chooses the candidates that are worth one of `rays` rays, each with the radiance that it contributes unless it is blocked.
     ///
-    /// They are chosen by evenly spaced numbers from a row of cells: rays are spread over the sphere, as far as the light is. What
-    /// blocks one blocks its neighbours as well, so that the count of blocked rays varies less.
+    /// Evenly spaced numbers choose them from a sequence of cells, so that rays are spread over the sphere as far as the light is. Objects
+    /// that block one ray block its neighbours as well, so that the count of blocked rays varies less.
     #[inline]
     pub(super) fn choose(&mut self, rays: u32, u: f32) -> impl Iterator<Item = (Candidate, Vec3)> {
         let count = self.arrange();
@@ -110,7 +110,7 @@ impl Candidates {
         })
     }
 
-    /// Sorts those with a weight by cell, and counts them.
+    /// Sorts the candidates with a weight by cell, and returns their count.
     #[inline]
     fn arrange(&mut self) -> usize {
         let cells = &self.cell[..self.len];

@@ -1,32 +1,32 @@
-//! Cells of the sphere in a row, in which neighbours look in similar directions.
+//! Cells of the sphere in a sequence in which neighbours have similar directions.
 
 use hairis::Vec3x8;
 use hairis::simd::{Broadcast, Kernel, Lanes, Level, f32x8};
 
-/// Cells along a side of the square that the sphere is unfolded to.
+/// Number of cells along a side of the square to which the sphere is unfolded.
 const SIDE: usize = 8;
-/// Count of cells.
+/// Number of cells.
 pub(super) const CELLS: usize = SIDE * SIDE;
 
-/// Places of the square's cells along a curve of Hilbert's, row by row.
+/// Places of the square's cells along Hilbert's curve, row by row.
 static CURVE: [u8; CELLS] = curve();
 
-/// The cell of a unit vector per lane.
+/// Returns the cell of a unit vector per lane.
 #[inline]
 pub(super) fn cells(direction: &Vec3x8) -> [u8; 8] {
     let [a, b] = Level::detect()
         .run(Unfold(direction))
         .map(|side| side.fast_trunc_int().to_array());
-    // Numbers beyond the square, and those that are none, go into some cell.
+    // Wrap numbers beyond the square, and those that are NaN, into some cell.
     core::array::from_fn(|lane| {
         CURVE[(a[lane].cast_unsigned() as usize % SIDE) * SIDE
             + b[lane].cast_unsigned() as usize % SIDE]
     })
 }
 
-/// Unfolds the octahedron: the upper half of the sphere is in the middle of the square, the lower half about it.
+/// Kernel that unfolds the octahedron: the upper half of the sphere is in the middle of the square, the lower half around it.
 ///
-/// Places on the square, in cells.
+/// Returns places on the square, in cells.
 struct Unfold<'a>(&'a Vec3x8);
 
 impl Kernel for Unfold<'_> {
@@ -52,7 +52,7 @@ impl Kernel for Unfold<'_> {
     }
 }
 
-/// Hilbert's curve through a square of [`SIDE`] cells.
+/// Returns Hilbert's curve through a square of [`SIDE`] cells a side.
 const fn curve() -> [u8; CELLS] {
     let mut places = [0; CELLS];
     let mut place = 0;

@@ -1,4 +1,4 @@
-//! The path tracer of `tuft.wgsl`, line by line, on the library.
+//! CPU counterpart of the path tracer in `tuft.wgsl`, line by line, on top of the library.
 
 use crate::{SAMPLES, SIDE};
 use glam::{Vec2, Vec3};
@@ -9,11 +9,11 @@ const RADIUS: f32 = 0.012;
 const SUN: Vec3 = Vec3::new(0.507_673_1, 0.609_207_7, 0.609_207_7);
 const SUNLIGHT: f32 = 5.0;
 
-/// A permuted congruential generator.
+/// Permuted congruential generator of random numbers.
 pub(crate) struct Random(pub(crate) u32);
 
 impl Random {
-    /// A number in `[0, 1)`.
+    /// Draws a number in `[0, 1)`.
     pub(crate) fn unit(&mut self) -> f32 {
         self.0 = self.0.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
         let word = ((self.0 >> ((self.0 >> 28) + 4)) ^ self.0).wrapping_mul(277_803_737);
@@ -25,7 +25,7 @@ impl Random {
     }
 }
 
-/// Distance to the nearest hair along a ray, and its tangent and normal.
+/// Returns the distance to the nearest hair along a ray, with the hair's tangent and the normal.
 fn meet(hairs: &[(Vec3, Vec3)], origin: Vec3, ray: Vec3) -> Option<(f32, Vec3, Vec3)> {
     let mut nearest: Option<(f32, Vec3, Vec3)> = None;
     for &(root, tangent) in hairs {
@@ -50,7 +50,7 @@ fn sky(ray: Vec3) -> Vec3 {
     Vec3::new(0.3, 0.4, 0.6) * (0.6 + 0.4 * ray.y)
 }
 
-/// Sum of the samples of each pixel in linear RGB, row by row.
+/// Draws the picture: the sum of the samples of each pixel in linear RGB, row by row.
 pub(crate) fn draw(material: &Material<Matched<Gaussian>>, hairs: &[(Vec3, Vec3)]) -> Vec<Vec3> {
     let sample = |pixel: usize, sample: usize| {
         let seed = u32::try_from(pixel * SAMPLES + sample).expect("few pixels");

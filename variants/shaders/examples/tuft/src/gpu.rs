@@ -1,4 +1,4 @@
-//! One compute shader through wgpu: buffers in, a picture out.
+//! Compute shader on wgpu, which reads buffers and returns a picture.
 
 use crate::{SAMPLES, SIDE};
 use glam::Vec3;
@@ -9,8 +9,8 @@ use wgpu::{
     RequestAdapterOptions, ShaderModuleDescriptor, ShaderSource,
 };
 
-/// Sum of the samples of each pixel, by `draw` of the module `source`, and whether the adapter is a driver in software. Buffers 0 to 2
-/// are the hairs, the numbers of the material, and the picture.
+/// Draws the picture with `draw` of the module `source`: returns the sum of the samples of each pixel, and whether the adapter is a
+/// software driver. Buffers 0 to 2 are the hairs, the numbers of the material, and the picture.
 pub(crate) fn draw(
     source: &str,
     hairs: &[(Vec3, Vec3)],
@@ -83,7 +83,7 @@ pub(crate) fn draw(
         let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &group, &[]);
-        // One sample a dispatch: drivers end a shader that loops for long, and lavapipe does so without an error.
+        // One sample per dispatch, because drivers end a shader that loops for long, and lavapipe does so without an error.
         for _ in 0..SAMPLES {
             pass.dispatch_workgroups(u32::try_from((SIDE * SIDE).div_ceil(64))?, 1, 1);
         }

@@ -1,5 +1,5 @@
-//! A tuft drawn twice by one path tracer: on a GPU, by generated WGSL through wgpu, and on the CPU, by the library. Writes both
-//! pictures and a hundred times their difference side by side, and prints how far apart they are.
+//! A tuft drawn twice by one path tracer: on a GPU, by generated WGSL through wgpu, and on the CPU, by the library. Writes both pictures
+//! and a hundred times their difference side by side, and prints how much they differ.
 //!
 //! `cargo run -- [FILE.png]`
 
@@ -20,7 +20,7 @@ const SIDE: usize = 160;
 /// Samples of a pixel, as in `tuft.wgsl`.
 const SAMPLES: usize = 32;
 
-/// Root and unit tangent of each hair; all have the length 1.
+/// Returns the root and the unit tangent of each hair; all hairs have the length 1.
 fn grow() -> Vec<(Vec3, Vec3)> {
     let mut random = cpu::Random(7);
     let hair = |_| {
@@ -31,7 +31,7 @@ fn grow() -> Vec<(Vec3, Vec3)> {
     (0..400).map(hair).collect()
 }
 
-/// Module with the model's functions, and the path tracer that calls them.
+/// Returns the module with the model's functions, followed by the path tracer that calls them.
 fn module() -> String {
     let mut program = Program::of::<Matched<Gaussian>>(Target::Gpu);
     let call = program.function(Call::EvalSampleHit).clone();
@@ -47,7 +47,7 @@ fn encode(sum: f32) -> u8 {
 fn main() -> Result<(), Box<dyn Error>> {
     let file = std::env::args_os().nth(1).unwrap_or("tuft.png".into());
     let (model, params) = (Matched::new(Gaussian), HairParams::blond());
-    // No more light returns than arrives.
+    // Scaled so that no more light is returned than arrives.
     let scale = Material::new(&model, &params).conserving_scale();
     let params = params.scaled(scale)?;
     let (hairs, constants) = (grow(), numbers(&model.material(&params)));
@@ -96,8 +96,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         "GPU, CPU and 100 times their difference: {}",
         file.display()
     );
-    // A path parts where rounding moves it past the edge of a hair, and then its pixel differs by one sample of many. A GPU, which
-    // rounds divisions otherwise, parts more paths than lavapipe: 1.4e-4 and 2.7e-2 on an H100.
+    // Paths diverge where rounding moves them past the edge of a hair, and each changes one sample of a pixel. More paths diverge on a
+    // GPU, which rounds divisions differently, than on lavapipe: 1.4e-4 and 2.7e-2 on an H100.
     let bounds = if is_software {
         [1e-5, 1e-6]
     } else {

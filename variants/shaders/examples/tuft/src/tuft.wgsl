@@ -1,4 +1,4 @@
-// A path tracer over a tuft of straight hairs, to follow the generated source of the Gaussian model with its matched sampler.
+// Path tracer over a tuft of straight hairs, to follow the generated source of the Gaussian model with its matched sampler.
 
 struct Hair {
     root: vec4<f32>,
@@ -18,7 +18,7 @@ const SUNLIGHT = 5.0;
 
 var<private> state: u32;
 
-// A number in [0, 1): a permuted congruential generator.
+// Draws a number in [0, 1) from a permuted congruential generator.
 fn unit() -> f32 {
     state = state * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
@@ -41,7 +41,7 @@ struct Meeting {
     normal: vec3<f32>,
 }
 
-// The nearest hair along a ray; a distance below 0 is none.
+// Returns the nearest hair along a ray; a distance below 0 means that the ray meets no hair.
 fn meet(origin: vec3<f32>, ray: vec3<f32>) -> Meeting {
     var nearest = Meeting(-1.0, vec3<f32>(), vec3<f32>());
     for (var i = 0u; i < arrayLength(&hairs); i++) {
@@ -92,7 +92,7 @@ fn draw(@builtin(global_invocation_id) id: vec3<u32>) {
             break;
         }
         origin += hit.distance * ray + 1e-4 * hit.normal;
-        // The frame of the fibre: u along it, v the normal.
+        // Frame of the fibre: u along it, v the normal.
         let w = cross(hit.tangent, hit.normal);
         let to_local = transpose(mat3x3<f32>(hit.tangent, hit.normal, w));
         let wo = to_local * -ray;

@@ -1,10 +1,10 @@
-//! Layers with colour: which there are, and which is the map.
+//! Layers with colour: the list of those in a file, and the choice of the one that holds the map.
 
 use super::super::line;
 use exr::meta::header::Header;
 use std::collections::BTreeMap;
 
-/// Layers and channels that a message names at most.
+/// Largest number of layers or channels that a message names.
 const MOST_NAMES: usize = 24;
 
 /// Meaning of the three channels of a layer.
@@ -18,18 +18,18 @@ pub(super) enum Colour {
     Luminance,
 }
 
-/// A layer with colour: channels of one part that share what stands before the last dot of their names.
+/// Layer with colour: channels of one part whose names are equal up to the last dot.
 #[derive(Debug)]
 pub(super) struct Layer {
     pub(super) part: usize,
     pub(super) name: String,
     is_unnamed: bool,
     pub(super) colour: Colour,
-    /// Places in the part's list of channels.
+    /// Indices in the part's list of channels.
     pub(super) channels: [usize; 3],
 }
 
-/// The layers with colour.
+/// Returns the layers with colour, part by part.
 pub(super) fn find_layers(headers: &[Header]) -> Vec<Layer> {
     let mut layers = Vec::new();
     for (part, header) in headers.iter().enumerate() {
@@ -67,7 +67,7 @@ pub(super) fn find_layers(headers: &[Header]) -> Vec<Layer> {
     layers
 }
 
-/// The colour that a layer has, by the places of its channels.
+/// Returns the kind of colour that a layer has, with the indices of its channels.
 fn colour(place: impl Fn([&str; 2]) -> Option<usize>) -> Option<(Colour, [usize; 3])> {
     if let (Some(r), Some(g), Some(b)) = (
         place(["R", "red"]),
@@ -95,7 +95,7 @@ fn channel_names(header: &Header) -> Vec<String> {
         .collect()
 }
 
-/// The layer of this name; without a name, the only layer that may be meant.
+/// Returns the layer with this name, or without a name the only layer that may be meant.
 pub(super) fn choose<'a>(
     headers: &[Header],
     layers: &'a [Layer],
@@ -148,7 +148,7 @@ pub(super) fn choose<'a>(
     })
 }
 
-/// Names as a list that is not too long.
+/// Joins names to a list that is not too long.
 pub(super) fn listed(names: impl Iterator<Item = String>) -> String {
     let mut names: Vec<String> = names.collect();
     let more = names.len().saturating_sub(MOST_NAMES);
