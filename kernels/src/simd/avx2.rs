@@ -330,7 +330,13 @@ fn interleave(mut a: __m256, mut b: __m256) -> (__m256, __m256) {
 #[inline]
 fn two_rows(low: &[f32; 4], high: &[f32; 4]) -> __m256 {
     // SAFETY: any bits are four numbers.
-    unsafe { _mm256_set_m128(transmute(*high), transmute(*low)) }
+    let (low, high) = unsafe {
+        (
+            transmute::<[f32; 4], __m128>(*low),
+            transmute::<[f32; 4], __m128>(*high),
+        )
+    };
+    _mm256_set_m128(high, low)
 }
 
 /// Loads eight lanes in two loads of 16 bytes, each of which a store of 16 bytes is forwarded to. From intrinsics the compiler makes
