@@ -234,16 +234,16 @@ fn path(reference: &dyn Reference<f64>, xi: [f64; 3], axis: usize) -> Vec<Refere
     };
     let mut path = vec![sample(NUMBERS[0])];
     for ends in NUMBERS.windows(2) {
-        let ([mut from, mut to], [mut before, mut after]) =
-            ([ends[0], ends[1]], [ends[0], ends[1]].map(sample));
-        let lobes = [before.lobe, after.lobe];
+        let [mut from, mut to] = [ends[0], ends[1]];
         let last = sample(to);
-        if lobes[0] != lobes[1] {
+        let (mut before, mut after) = (path[path.len() - 1], last);
+        let lobe = before.lobe;
+        if lobe != last.lobe {
             // Down to the rounding of the number.
             for _ in 0..40 {
                 let middle = 0.5 * (from + to);
                 let found = sample(middle);
-                if found.lobe == lobes[0] {
+                if found.lobe == lobe {
                     (from, before) = (middle, found);
                 } else {
                     (to, after) = (middle, found);
