@@ -18,7 +18,7 @@ use hairis::simd::{Level, control, set_control};
 const NAME: &str = "results are finite however they are rounded";
 
 /// Control bits for rounding to nearest, down, up and towards 0, each with denormals and without.
-const MODES: [u32; 8] = [
+pub(crate) const MODES: [u32; 8] = [
     0x0000, 0x2000, 0x4000, 0x6000, 0x8040, 0xa040, 0xc040, 0xe040,
 ];
 /// Control bits for rounding down, without denormals.

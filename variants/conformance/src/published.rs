@@ -178,7 +178,10 @@ macro_rules! published {
             density { each_lobe_integrates_to_one }
             fireflies { weights_are_below_their_bound_and_close_to_the_mean }
             seam { samples_next_to_the_seam_report_their_own_direction }
-            tails { samples_in_the_tails_report_their_own_direction samples_of_lobes_off_the_sphere_report_their_own_direction }
+            tails {
+                samples_in_the_tails_report_their_own_direction samples_of_lobes_off_the_sphere_report_their_own_direction
+                ends_of_an_azimuth_are_sound_however_results_are_rounded
+            }
             variance { variance_falls_by_what_is_promised }
         );
     };

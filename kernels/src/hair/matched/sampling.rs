@@ -7,7 +7,8 @@ use crate::simd::{Broadcast, Choice, Lanes, Vec3x, lanes3};
 
 /// Share of an integral that is left out at its ends: a quarter of the step between uniform numbers of 24 bits. On narrow bells and
 /// in far tails, where the ends have digits for it, rounding then moves no sample past them, to a pole or to a place where a
-/// Gaussian has no density left. A wide bell may reach the pole, where it has no sample.
+/// Gaussian has no density left. A wide bell may reach the pole, where it has no sample. The azimuth leaves out two steps below 1 at its
+/// far end: the integral falls to 0 there, and one step is lost where results are rounded up.
 const LEAST_SHARE: f32 = f32::EPSILON / 8.0;
 
 /// Draws a direction for `xi = [lobe, theta, phi]`. Returns the direction, its lobe, and its angles.
@@ -52,7 +53,7 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let folded = FoldedXi::of(xi[2]);
     let is_glint = choice.equals(3);
     let share = L::select(is_glint, one - folded.across, folded.across);
-    let share = c(LEAST_SHARE).max(share.min(c(1.0 - f32::EPSILON / 2.0)));
+    let share = c(LEAST_SHARE).max(share.min(c(1.0 - f32::EPSILON)));
     let (mass, from) = (
         C::look_up_half(&prepared.azimuth_mass, choice),
         C::look_up_half(&prepared.azimuth_from, choice),

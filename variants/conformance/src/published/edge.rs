@@ -11,9 +11,9 @@ use hairis::params::{HairDesc, MAX_WIDTH, MIN_WIDTH};
 use hairis::simd::Level;
 use hairis::{HairParams, Lobe, LobeMask, Sample};
 
-const ENDS: [f32; 4] = [0.0, f32::EPSILON / 2.0, 0.5, LAST];
+pub(super) const ENDS: [f32; 4] = [0.0, f32::EPSILON / 2.0, 0.5, LAST];
 
-fn material<'a>(tested: &'a Tested, desc: &HairDesc) -> Material<'a> {
+pub(super) fn material<'a>(tested: &'a Tested, desc: &HairDesc) -> Material<'a> {
     Material::new(tested.model(), &HairParams::new(desc).unwrap())
 }
 

@@ -2,14 +2,17 @@
 //! direction they return.
 
 use super::Tested;
+use super::edge::{ENDS, material, samples};
 use super::handles::Material;
 use super::support::{DEG, angles, direction, double, lanes_of, narrow, oracle, widths};
 use crate::comparison::{LargestError, relative};
+use crate::environment::{MODES, with_mode};
 use crate::probe::LAST;
 use core::f64::consts::PI;
+use glam::Vec3;
 use hairis::params::HairDesc;
 use hairis::simd::Level;
-use hairis::{HairParams, Lobe};
+use hairis::{HairParams, Lobe, LobeMask};
 
 /// Numbers next to the ends of their range, and some between.
 const NUMBERS: [f32; 15] = [
@@ -151,5 +154,30 @@ pub fn samples_of_lobes_off_the_sphere_report_their_own_direction(tested: &Teste
             &format!("{what} of a sample of a lobe off the sphere"),
             bound,
         );
+    }
+}
+
+/// Rounded up, the integral of an azimuth whose bell ends at its centre once came to 0 at the far end, thirteen widths out.
+pub fn ends_of_an_azimuth_are_sound_however_results_are_rounded(tested: &Tested) {
+    for width in (1..=60_u8).map(|i| 0.01 * f32::from(i)) {
+        let desc = HairDesc {
+            phi_g: 0.0,
+            ..widths(width)
+        };
+        for mode in MODES {
+            let bsdf = with_mode(mode, || {
+                material(tested, &desc).prepare(Vec3::new(0.6, 0.8, 0.0))
+            });
+            for lobe in [Lobe::TT, Lobe::GLINT] {
+                let alone = bsdf.with_lobes(LobeMask::of(&[lobe]));
+                for xi in ENDS.map(|xi| [0.5, 0.5, xi]) {
+                    for sample in with_mode(mode, || samples(&alone, xi)) {
+                        let at = format!("{lobe:?} of width {width}, mode {mode:#x}, xi {xi:?}");
+                        let sample = sample.unwrap_or_else(|| panic!("no sample: {at}"));
+                        assert!((sample.wi.length() - 1.0).abs() < 1e-5, "{at}: {sample:?}");
+                    }
+                }
+            }
+        }
     }
 }
