@@ -14,28 +14,52 @@ pub(crate) fn chi_square_tail(x: f64, freedom: usize) -> f64 {
 
 /// Edges between cells of an angle. They find the cell of a direction without the arc tangent, which takes longer than drawing a sample.
 #[derive(Clone, Debug)]
-pub struct AngleEdges(Vec<f64>);
+pub struct AngleEdges {
+    /// Edges, as numbers that ascend with the angle.
+    edges: Vec<f64>,
+    /// Number of edges below the start of each part of the range of these numbers.
+    below: Vec<usize>,
+}
 
 impl AngleEdges {
+    /// Number of parts, of equal width, in which a search starts.
+    const PARTS: usize = 256;
+
     /// Makes edges from their angles.
     ///
     /// - Units: radians.
     /// - Domain: ascending, from -pi to pi.
     #[must_use]
     pub fn new(angles: &[f64]) -> Self {
-        Self(
-            angles
-                .iter()
-                .map(|x| angle_order(x.sin_cos().into()))
-                .collect(),
-        )
+        let edges: Vec<f64> = angles
+            .iter()
+            .map(|x| angle_order(x.sin_cos().into()))
+            .collect();
+        let below = (0..=Self::PARTS)
+            .map(|part| edges.partition_point(|edge| Self::part(*edge) < part))
+            .collect();
+        Self { edges, below }
     }
 
     /// Returns the number of edges at or below the angle of a sine and a cosine, both times one length; 0 if both are 0.
+    #[inline]
     #[must_use]
     pub fn below(&self, sides: [f64; 2]) -> usize {
         let order = angle_order(sides);
-        self.0.partition_point(|edge| *edge <= order)
+        let part = Self::part(order);
+        let [below, end] = [self.below[part], self.below[part + 1]];
+        below + self.edges[below..end].partition_point(|edge| *edge <= order)
+    }
+
+    /// Returns the part that holds a number of [`angle_order`], and the first for NaN.
+    #[inline]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the number of a part: a handful of bits"
+    )]
+    fn part(order: f64) -> usize {
+        let part = (order + 2.0) * (Self::PARTS as f64 / 4.0);
+        (part as usize).min(Self::PARTS - 1)
     }
 }
 
@@ -188,6 +212,7 @@ pub fn ks_p_value(d: f64, n: usize) -> f64 {
 mod tests {
     use super::*;
     use crate::probe::Draws;
+    use core::f64::consts::{FRAC_PI_2, PI};
     use statrs::function::erf::erfc;
 
     #[test]
@@ -197,8 +222,8 @@ mod tests {
         assert!((r.statistic - 520.0 / 34.0).abs() < 1e-12, "{r:?}");
         // Q(5/2, x/2) in closed form: erfc and two terms.
         let x: f64 = 520.0 / 34.0;
-        let want = erfc((0.5 * x).sqrt())
-            + (2.0 * x / core::f64::consts::PI).sqrt() * (-x / 2.0).exp() * (1.0 + x / 3.0);
+        let want =
+            erfc((0.5 * x).sqrt()) + (2.0 * x / PI).sqrt() * (-x / 2.0).exp() * (1.0 + x / 3.0);
         assert!((r.p_value - want).abs() < 1e-13, "{} {want}", r.p_value);
     }
 
@@ -217,7 +242,7 @@ mod tests {
 
     #[test]
     fn angles_are_in_order() {
-        let all = (-1000..=1000).map(|k| f64::from(k) * core::f64::consts::PI / 1000.0);
+        let all = (-1000..=1000).map(|k| f64::from(k) * PI / 1000.0);
         let order: Vec<f64> = all
             .map(|x| angle_order([3.0 * x.sin(), 3.0 * x.cos()]))
             .collect();
@@ -231,6 +256,24 @@ mod tests {
             [order[0], order[500], order[1000], order[1500], order[2000]].map(f64::round),
             [-2.0, -1.0, 0.0, 1.0, 2.0]
         );
+    }
+
+    #[test]
+    fn edges_below_an_angle_are_counted() {
+        // Even ones, some together, and many within one part.
+        let mut angles: Vec<f64> = (-3..=3).map(f64::from).collect();
+        angles.extend([-PI, -FRAC_PI_2, -FRAC_PI_2, 0.0, PI]);
+        angles.extend((0..50).map(|i| 0.5 + 1e-5 * f64::from(i)));
+        angles.sort_by(f64::total_cmp);
+        let edges = AngleEdges::new(&angles);
+        let between = (0..4000).map(|i| -PI + f64::from(i) * PI / 2000.0);
+        for angle in angles.iter().copied().chain(between) {
+            let below = angles.iter().filter(|edge| **edge <= angle).count();
+            let [sin, cos] = angle.sin_cos().into();
+            assert_eq!(edges.below([sin, cos]), below, "{angle}");
+        }
+        assert_eq!(edges.below([0.0, 0.0]), 0);
+        assert_eq!(AngleEdges::new(&[]).below([0.0, 1.0]), 0);
     }
 
     #[test]
