@@ -14,52 +14,28 @@ pub(crate) fn chi_square_tail(x: f64, freedom: usize) -> f64 {
 
 /// Edges between cells of an angle. They find the cell of a direction without the arc tangent, which takes longer than drawing a sample.
 #[derive(Clone, Debug)]
-pub struct AngleEdges {
-    /// Edges, as numbers that ascend with the angle.
-    edges: Vec<f64>,
-    /// Number of edges below the start of each part of the range of these numbers.
-    below: Vec<usize>,
-}
+pub struct AngleEdges(Vec<f64>);
 
 impl AngleEdges {
-    /// Number of parts, of equal width, in which a search starts.
-    const PARTS: usize = 256;
-
     /// Makes edges from their angles.
     ///
     /// - Units: radians.
     /// - Domain: ascending, from -pi to pi.
     #[must_use]
     pub fn new(angles: &[f64]) -> Self {
-        let edges: Vec<f64> = angles
-            .iter()
-            .map(|x| angle_order(x.sin_cos().into()))
-            .collect();
-        let below = (0..=Self::PARTS)
-            .map(|part| edges.partition_point(|edge| Self::part(*edge) < part))
-            .collect();
-        Self { edges, below }
+        Self(
+            angles
+                .iter()
+                .map(|x| angle_order(x.sin_cos().into()))
+                .collect(),
+        )
     }
 
     /// Returns the number of edges at or below the angle of a sine and a cosine, both times one length; 0 if both are 0.
-    #[inline]
     #[must_use]
     pub fn below(&self, sides: [f64; 2]) -> usize {
         let order = angle_order(sides);
-        let part = Self::part(order);
-        let [below, end] = [self.below[part], self.below[part + 1]];
-        below + self.edges[below..end].partition_point(|edge| *edge <= order)
-    }
-
-    /// Returns the part that holds a number of [`angle_order`], and the first for NaN.
-    #[inline]
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "the number of a part: a handful of bits"
-    )]
-    fn part(order: f64) -> usize {
-        let part = (order + 2.0) * (Self::PARTS as f64 / 4.0);
-        (part as usize).min(Self::PARTS - 1)
+        self.0.partition_point(|edge| *edge <= order)
     }
 }
 
@@ -260,7 +236,7 @@ mod tests {
 
     #[test]
     fn edges_below_an_angle_are_counted() {
-        // Even ones, some together, and many within one part.
+        // Even ones, some together, and many close to each other.
         let mut angles: Vec<f64> = (-3..=3).map(f64::from).collect();
         angles.extend([-PI, -FRAC_PI_2, -FRAC_PI_2, 0.0, PI]);
         angles.extend((0..50).map(|i| 0.5 + 1e-5 * f64::from(i)));
