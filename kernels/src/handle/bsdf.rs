@@ -119,9 +119,9 @@ impl<M: Model> Bsdf<M> {
 
     /// Returns the directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
     ///
-    /// - Accuracy, for the published model: 1e-4 relative for lobes of any width, viewed from further than 1e-5 rad from the axis. Where
-    ///   the centre of a lobe lies beyond a pole, the error may also be what 6e-8 rad of `alpha` change: 4e-3 for the narrowest lobes,
-    ///   six widths beyond it.
+    /// - Accuracy, for the published model: 1e-4 relative for lobes of any width, viewed from further than 1e-5 rad from the axis, or what
+    ///   6e-8 rad of `alpha` change where that is more. It is more for narrow lobes next to a pole or beyond it: 4e-3 for the narrowest,
+    ///   six widths beyond.
     #[inline]
     #[must_use]
     pub fn albedo(&self) -> PerLobe<[f32; 3]> {

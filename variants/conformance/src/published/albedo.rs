@@ -175,12 +175,12 @@ fn exact(tested: &Tested, p: &HairDesc<f64>, theta_o: f64) -> PerLobe<f64> {
 /// Error of half an inclination in the kernels, in rad: a unit in the last place of angles from 0.5 to 1.
 const ANGLE: f64 = 0.5 * f32::EPSILON as f64;
 
-/// Returns materials of narrow lobes whose centres lie up to six widths beyond a pole, as seen from this inclination.
-fn beyond_a_pole(theta_o: f64) -> impl Iterator<Item = HairParams> {
+/// Returns materials of narrow lobes whose centres lie up to six widths from a pole, within it and beyond, as seen from this inclination.
+fn at_a_pole(theta_o: f64) -> impl Iterator<Item = HairParams> {
     [1e-4, 1e-3, 1e-2].into_iter().flat_map(move |beta| {
-        (0..=12).map(move |i| {
+        (-12..=12).map(move |i| {
             let beyond = 0.25 * PI - 0.5 * theta_o.abs() + 0.5 * f64::from(i) * beta;
-            let alpha = narrow(beyond.copysign(-theta_o));
+            let alpha = narrow(beyond * -theta_o.signum());
             let desc = HairDesc {
                 alpha: [alpha; 3],
                 beta: [narrow(beta); 3],
@@ -207,7 +207,7 @@ pub fn albedo_of_any_width_is_the_integral(tested: &Tested) {
                 let of = |distance: f64| distance.abs() / want[lobe].max(1e-9);
                 let mut error = of(got - want[lobe]);
                 if error > tested.rows.albedo_any {
-                    // Of a narrow lobe beyond a pole the rounding of its angle decides what is left.
+                    // The rounding of the angle of a narrow lobe at a pole decides how much of it lies on the sphere.
                     let turned = [-ANGLE, ANGLE].map(|by| {
                         let alpha = p.alpha.map(|alpha| alpha + by);
                         exact(tested, &HairDesc { alpha, ..p }, theta_o)[lobe]
@@ -228,7 +228,7 @@ pub fn albedo_of_any_width_is_the_integral(tested: &Tested) {
             .filter(|(off, _)| *off > 1e-5);
         for at in seen {
             any_widths.iter().for_each(|params| see(params, at));
-            beyond_a_pole(off_pole(at).1).for_each(|params| see(&params, at));
+            at_a_pole(off_pole(at).1).for_each(|params| see(&params, at));
         }
     }
     worst.check(
