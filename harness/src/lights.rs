@@ -95,6 +95,7 @@ mod tests {
     use glam::DVec3;
     use hairis::Vec3x8;
     use hairis_instruments::light::{LightSample, Seen8};
+    use hairis_instruments::quadrature::{Integral, SphereIntegrator};
     use hairis_instruments::shard::Shard;
 
     /// Sixth light: a sun elsewhere.
@@ -116,6 +117,15 @@ mod tests {
 
         fn see8(&self, dir: &Vec3x8) -> Seen8 {
             self.0.see8(dir)
+        }
+
+        // Over its own disc. Over the whole sphere no quadrature converges, and each integral takes seconds.
+        fn integrate(
+            &self,
+            f: &dyn Fn(DVec3) -> [f64; 3],
+            sphere: &SphereIntegrator,
+        ) -> Integral<3> {
+            self.0.integrate(f, sphere)
         }
     }
 

@@ -4,15 +4,14 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 use core::fmt::Write as _;
 use glam::Vec3;
-use hairis::model::Model;
 use hairis::params::HairDesc;
 use hairis::simd::f32x8;
-use hairis::{Gaussian, HairParams, Lobe, LobeMask, Matched, Material, Sample8};
+use hairis::{HairParams, Lobe, LobeMask, Sample8};
 use hairis_conformance::statistics::{AngleEdges, ChiSquare, chi_square, ks_statistic};
 use hairis_instruments::sequence::Independent;
 use hairis_instruments::stats::sidak;
 use hairis_reference::{HairReference, MatchedReference, Reference, Shape};
-use hairis_variants::{Cauchy, ModelId, Parameters as _};
+use hairis_variants::{ModelId, Parameters as _};
 
 const SAMPLES: u32 = 1_000_000;
 /// Inclinations of the viewer in degrees. Errors of the bounds show at the tilted and grazing ones.
@@ -21,8 +20,8 @@ const THETA_O: [f32; 4] = [0.0, 45.0, 85.0, -80.0];
 const GRAZING: f64 = 1e-5;
 /// Number of chi-square tests of the whole grid: models, samplers, materials, inclinations, four lobes and their mixture.
 const TESTS: usize = 2 * SAMPLERS * 3 * 4 * 5;
-/// Number of samplers: the published one, three matched ones, and one that chooses lobes by channel.
-const SAMPLERS: usize = 5;
+/// Number of samplers of the registry: the published one and the matched one. The conformance suite tests other numbers of bands.
+const SAMPLERS: usize = 2;
 
 /// Returns the default set, the same with every width 0.5 degrees and with every width 60 degrees; all are tilted.
 fn materials() -> [(&'static str, HairParams); 3] {
@@ -87,14 +86,6 @@ fn registered(model: ModelId) -> impl Fn(&HairParams, Vec3, LobeMask) -> Draw {
     }
 }
 
-/// Returns a function that prepares samples of a model that is not in the registry.
-fn of_type<M: Model + 'static>(model: M) -> impl Fn(&M::Params, Vec3, LobeMask) -> Draw {
-    move |params, wo, mask| {
-        let bsdf = Material::new(&model, params).prepare(wo).with_lobes(mask);
-        Box::new(move |xi| bsdf.sample8(xi))
-    }
-}
-
 /// Calls `f` with each of a million samples, or with `None` for a discarded one.
 fn for_each_sample(draw: &Draw, stream: u64, mut f: impl FnMut(Option<Vec3>)) {
     let mut xi = Independent::new(2012, stream);
@@ -141,10 +132,8 @@ fn published(shape: Shape) -> impl Fn(&HairParams, Vec3) -> HairReference<f64> {
 }
 
 /// Returns a function that prepares the matched sampler of a shape.
-fn matched(shape: Shape, bands: usize) -> impl Fn(&HairParams, Vec3) -> MatchedReference<f64> {
-    move |params, wo| {
-        MatchedReference::prepare(&params.desc().map(f64::from), shape, double(wo), bands)
-    }
+fn matched(shape: Shape) -> impl Fn(&HairParams, Vec3) -> MatchedReference<f64> {
+    move |params, wo| MatchedReference::prepare(&params.desc().map(f64::from), shape, double(wo), 9)
 }
 
 /// Cells in `theta_i` and `phi` that resolve every lobe, and the number of samples that each should hold.
@@ -345,68 +334,18 @@ fn samples_of_the_cauchy_model_follow_its_density() {
 }
 
 #[test]
-fn samples_of_few_bands_follow_their_density() {
-    check(
-        of_type(Matched::<_, 5>(Gaussian)),
-        matched(Shape::Gaussian, 5),
-        "5 bands Gaussian",
-        5,
-    );
-    check(
-        of_type(Matched::<_, 5>(Cauchy::PAPER)),
-        matched(Shape::Cauchy, 5),
-        "5 bands Cauchy",
-        6,
-    );
-}
-
-#[test]
-fn samples_of_the_default_bands_follow_their_density() {
+fn samples_of_the_matched_sampler_follow_their_density() {
     check(
         registered(ModelId::GaussianMatched),
-        matched(Shape::Gaussian, 9),
-        "9 bands Gaussian",
+        matched(Shape::Gaussian),
+        "matched Gaussian",
         3,
     );
     check(
         registered(ModelId::CauchyMatched),
-        matched(Shape::Cauchy, 9),
-        "9 bands Cauchy",
+        matched(Shape::Cauchy),
+        "matched Cauchy",
         4,
-    );
-}
-
-#[test]
-fn samples_of_many_bands_follow_their_density() {
-    check(
-        of_type(Matched::<_, 25>(Gaussian)),
-        matched(Shape::Gaussian, 25),
-        "25 bands Gaussian",
-        7,
-    );
-    check(
-        of_type(Matched::<_, 25>(Cauchy::PAPER)),
-        matched(Shape::Cauchy, 25),
-        "25 bands Cauchy",
-        8,
-    );
-}
-
-#[test]
-fn samples_by_channel_follow_their_density() {
-    let reference =
-        |shape| move |params: &HairParams, wo| matched(shape, 9)(params, wo).by_channel();
-    check(
-        of_type(Matched::<_, 9, true>(Gaussian)),
-        reference(Shape::Gaussian),
-        "Gaussian by channel",
-        9,
-    );
-    check(
-        of_type(Matched::<_, 9, true>(Cauchy::PAPER)),
-        reference(Shape::Cauchy),
-        "Cauchy by channel",
-        10,
     );
 }
 

@@ -8,6 +8,10 @@ use hairis_instruments::light::{Environment, Light, LightSample, luminance, prod
 use hairis_instruments::quadrature::SphereIntegrator;
 use hairis_instruments::sequence::{Stratified, XiSource};
 use hairis_instruments::stats::{Estimate, Moments};
+#[cfg(test)]
+use std::collections::HashMap;
+#[cfg(test)]
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Returns `numerator / pdf`, or 0 if the density is 0, because nothing is drawn there and the contribution is 0 too.
 fn over(numerator: f64, pdf: f64) -> f64 {
@@ -47,38 +51,49 @@ fn second_moment(
     light.integrate(&square, sphere).value.iter().sum()
 }
 
+/// Integrals that were computed before. Tests run the tables a dozen times, and the integrals would take most of their time.
+#[cfg(test)]
+struct Known<T>(OnceLock<Mutex<HashMap<String, Arc<OnceLock<T>>>>>);
+
+#[cfg(test)]
+impl<T: Copy> Known<T> {
+    const fn new() -> Self {
+        Self(OnceLock::new())
+    }
+
+    /// Returns the integral of this name, which `integrate` computes once.
+    fn get(&self, name: &str, integrate: impl FnOnce() -> T) -> T {
+        // The key has the number of threads, because a test checks that results do not depend on it.
+        let key = format!("{} {name}", rayon::current_num_threads());
+        let mut known = (self.0.get_or_init(Mutex::default))
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let of_key = Arc::clone(known.entry(key).or_default());
+        drop(known);
+        *of_key.get_or_init(integrate)
+    }
+}
+
 /// Returns mean and variances by the light's own quadrature.
 #[cfg(not(test))]
 pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
     integrated(case, light)
 }
 
-/// Returns mean and variances, integrating each case under each light once. Tests run the tables a dozen times, and these integrals would
-/// take most of their time.
+/// Returns mean and variances, integrating each case under each light once.
 #[cfg(test)]
 pub(crate) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
-    use std::collections::HashMap;
-    use std::sync::{Arc, Mutex, OnceLock, PoisonError};
-    type Known = Mutex<HashMap<String, Arc<OnceLock<Reference>>>>;
-    static KNOWN: OnceLock<Known> = OnceLock::new();
-    // The key has the number of threads, because a test checks that results do not depend on it.
-    let key = format!("{} {case:?} {light:?}", rayon::current_num_threads());
-    let mut known = KNOWN
-        .get_or_init(Known::default)
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner);
-    let of_key = Arc::clone(known.entry(key).or_default());
-    drop(known);
-    *of_key.get_or_init(|| integrated(case, light))
+    static KNOWN: Known<Reference> = Known::new();
+    KNOWN.get(&format!("{case:?} {light:?}"), || integrated(case, light))
 }
 
 fn integrated(case: &Case, light: &dyn Light) -> Reference {
     let (mean, _) = mean_by_quadrature(case, light);
     let v = SAMPLERS.map(|sampler| {
         let mut sphere = case.sphere(sampler).clone();
-        // A light that integrates over itself has edges along the jumps of a matched density. Twenty times as many panels take the area
-        // light 6 s and change its figure by 2e-6. Lights that cover the sphere converge long before.
-        sphere.tolerance.max_panels = 2_000;
+        // A light that integrates over itself has edges along the jumps of a matched density. Four hundred times as many panels take the
+        // area light 20 s and change its figure by 8e-7. Lights that cover the sphere converge before.
+        sphere.tolerance.max_panels = 500;
         let second = second_moment(case, light, &sphere, &|dir| case.density(sampler, dir));
         second / (mean.value * mean.value) - 1.0
     });
@@ -102,7 +117,7 @@ pub(crate) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
 pub(crate) fn ray_v(case: &Case, light: &dyn Light, sampler: Sampler) -> [f64; 2] {
     let both = |dir: DVec3| case.density(sampler, dir) + light.pdf(dir);
     let mut sphere = case.sphere(sampler).clone();
-    sphere.tolerance.max_panels = 2_000;
+    sphere.tolerance.max_panels = 500;
     let share = |dir: DVec3| {
         case.oracle_value(dir)
             .map(|s| over(s * case.density(sampler, dir), both(dir)))
@@ -215,8 +230,21 @@ pub(super) struct ExactVariance {
     pub(super) converged: bool,
 }
 
-/// Computes `V = E[f^2] / E[f]^2 - 1` with `f = S cos theta_i / pdf`, for both numbers of a colour at once, from the oracle.
+/// Returns V under constant light.
+#[cfg(not(test))]
 pub(super) fn exact_variance(case: &Case, sampler: Sampler) -> ExactVariance {
+    variance(case, sampler)
+}
+
+/// Returns V under constant light, integrating each case with each sampler once.
+#[cfg(test)]
+pub(super) fn exact_variance(case: &Case, sampler: Sampler) -> ExactVariance {
+    static KNOWN: Known<ExactVariance> = Known::new();
+    KNOWN.get(&format!("{case:?} {sampler:?}"), || variance(case, sampler))
+}
+
+/// Computes `V = E[f^2] / E[f]^2 - 1` with `f = S cos theta_i / pdf`, for both numbers of a colour at once, from the oracle.
+fn variance(case: &Case, sampler: Sampler) -> ExactVariance {
     let r = case.sphere(sampler).integrate_direction(|dir| {
         let rgb = case.oracle_value(dir);
         let pdf = case.density(sampler, dir);

@@ -204,10 +204,11 @@ fn a_killed_run_goes_on() {
         lines() < CELLS + 1 && !dir.path().join("study.csv").exists(),
         "killed too late to show anything"
     );
+    lend(reference(), dir.path());
     let run = study(dir.path(), "2", &[]);
     assert_eq!(run.code, Some(0), "{:?}", run.err);
     assert!(
-        run.err.iter().any(|line| line.contains("continues after")),
+        (run.err.iter()).any(|line| line.contains(WHOLE) && line.contains("continues after")),
         "{:?}",
         run.err
     );
