@@ -30,19 +30,20 @@ fn part() -> Part {
 fn files_hold_every_bit() {
     let folder = tempfile::TempDir::new().expect("a folder");
     let path = folder.path().join("a.part");
-    part().write(&path).expect("written");
-    assert_eq!(Part::read(&path).expect("read"), part());
+    let whole = part();
+    whole.write(&path).expect("written");
+    assert_eq!(Part::read(&path).expect("read"), whole);
     let bytes = fs::read(&path).expect("there");
-    let header = part().header().len();
+    let header = whole.header().len();
     // Whatever happens to a file, a tile is as it was or not there.
     let tiles = |bytes: &[u8]| {
         let read = Part::from_bytes(bytes)?;
-        assert_eq!((&read.run, read.finished), (&part().run, false));
+        assert_eq!((&read.run, read.finished), (&whole.run, false));
         assert!(
             read.film
                 .tiles
                 .iter()
-                .all(|tile| part().film.tiles.contains(tile)),
+                .all(|tile| whole.film.tiles.contains(tile)),
             "a tile that was never written"
         );
         Some(read.film.tiles.len())

@@ -45,13 +45,15 @@ struct Line {
     density: [Vec<f64>; 4],
 }
 
-/// Returns `theta` and `phi` where a lobe is large.
-fn peak(params: &HairParams, theta_o: f64, lobe: Lobe) -> [f64; 2] {
+/// Returns `theta` and `phi` where each lobe is large.
+fn peaks(params: &HairParams, theta_o: f64) -> PerLobe<[f64; 2]> {
     let p = parameters(params, 1.0);
-    [
-        (2.0 * p.alpha[lobe.index().min(2)] - theta_o).clamp(-1.3, 1.3),
-        [0.0, PI, 0.0, p.phi_g][lobe.index()],
-    ]
+    PerLobe(Lobe::ALL.map(|lobe| {
+        [
+            (2.0 * p.alpha[lobe.index().min(2)] - theta_o).clamp(-1.3, 1.3),
+            [0.0, PI, 0.0, p.phi_g][lobe.index()],
+        ]
+    }))
 }
 
 fn line(bsdf: &dyn Sampling, points: &[(f64, f64)], at: impl Fn(Lobe, f64) -> [f64; 2]) -> Line {
@@ -88,9 +90,8 @@ fn inclination(bsdf: &dyn Sampling, params: &HairParams, theta_o: f64, jumps: &[
     );
     ends.extend(jumps.iter().filter(|x| x.abs() < FRAC_PI_2 - 1e-5));
     ends.sort_by(f64::total_cmp);
-    let mut line = line(bsdf, &rule(&ends), |lobe, theta| {
-        [theta, peak(params, theta_o, lobe)[1]]
-    });
+    let peaks = peaks(params, theta_o);
+    let mut line = line(bsdf, &rule(&ends), |lobe, theta| [theta, peaks[lobe][1]]);
     unit(&mut line.density, &line.weights);
     line
 }
@@ -104,11 +105,10 @@ fn azimuth(bsdf: &dyn Sampling, params: &HairParams, theta_o: f64) -> Line {
         &[(p.phi_g, p.gamma_g), (PI, p.gamma_tt), (FRAC_PI_2, 1.0)],
     );
     let points: Vec<_> = rule(&ends).into_iter().map(|(x, w)| (x, 2.0 * w)).collect();
-    let mut line = line(bsdf, &points, |lobe, phi| {
-        [peak(params, theta_o, lobe)[0], phi]
-    });
+    let peaks = peaks(params, theta_o);
+    let mut line = line(bsdf, &points, |lobe, phi| [peaks[lobe][0], phi]);
     for lobe in Lobe::ALL {
-        let [theta, phi] = peak(params, theta_o, lobe);
+        let [theta, phi] = peaks[lobe];
         let top =
             f64::from(bsdf.lobes(direction(theta, PHI_O - phi))[lobe].value) * theta.cos().powi(2);
         line.value[lobe.index()].iter_mut().for_each(|x| *x /= top);
