@@ -10,11 +10,13 @@
 //! use glam::Vec3;
 //! use hairis::{FiberFrame, Gaussian, HairParams, Material, Published};
 //!
-//! let hair = Material::new(&Published(Gaussian), &HairParams::brown()); // once per material
-//! let frame = FiberFrame::from_tangent(Vec3::new(0.1, 0.9, 0.2)); // once per hit, root to tip
-//! let bsdf = hair.prepare(frame.to_local(Vec3::new(0.6, 0.0, 0.8))); // towards the viewer
-//!
-//! let sample = bsdf.sample([0.3, 0.6, 0.9]).expect("not along the fibre"); // once per path
+//! // Once per material.
+//! let hair = Material::new(&Published(Gaussian), &HairParams::brown());
+//! // Once per hit: the tangent from root to tip, and the direction towards the viewer.
+//! let frame = FiberFrame::from_tangent(Vec3::new(0.1, 0.9, 0.2));
+//! let bsdf = hair.prepare(frame.to_local(Vec3::new(0.6, 0.0, 0.8)));
+//! // Once per path: a direction towards the light.
+//! let sample = bsdf.sample([0.3, 0.6, 0.9]).expect("not along the fibre");
 //! let towards_light = frame.to_world(sample.wi);
 //! assert!(towards_light.is_normalized() && sample.weight[0] > 0.0);
 //! ```
