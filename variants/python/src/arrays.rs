@@ -1,5 +1,6 @@
 //! Columns of NumPy arrays, which are borrowed and never copied.
 
+use core::fmt::Display;
 use hairis_capi::layout::{Evals, Samples};
 use numpy::{
     PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
@@ -52,7 +53,7 @@ pub(crate) fn samples(outputs: &Outputs<'_>) -> Samples {
 }
 
 /// Makes the exception for an array of another type, shape or layout than required.
-fn refused(name: &str, rows: usize, n: Option<usize>, got: &Bound<'_, PyAny>) -> PyErr {
+fn refused(name: &dyn Display, rows: usize, n: Option<usize>, got: &Bound<'_, PyAny>) -> PyErr {
     let flag = |name| -> PyResult<bool> { got.getattr("flags")?.getattr(name)?.extract() };
     let what = match (
         got.getattr("dtype"),
@@ -78,7 +79,7 @@ fn refused(name: &str, rows: usize, n: Option<usize>, got: &Bound<'_, PyAny>) ->
 
 /// Returns the array if it is float32 of this shape, C-contiguous and aligned, and an exception otherwise.
 fn cast<'a, 'py>(
-    name: &str,
+    name: &dyn Display,
     rows: usize,
     n: Option<usize>,
     any: &'a Bound<'py, PyAny>,
@@ -118,7 +119,7 @@ impl<'py> Input<'py> {
         rows: usize,
         n: Option<usize>,
     ) -> PyResult<Self> {
-        let array = cast(name, rows, n, any)?;
+        let array = cast(&name, rows, n, any)?;
         let n = array.shape().last().copied().unwrap_or(0);
         let array = array
             .try_readonly()
@@ -171,27 +172,23 @@ impl<'py> Outputs<'py> {
                 }
             }
         }
-        for key in dict.keys() {
-            let key: String = key.extract()?;
-            if !columns.iter().any(|(name, _)| *name == key) {
-                let names: Vec<_> = columns.iter().map(|(name, _)| *name).collect();
-                let names = names.join(", ");
-                return Err(PyValueError::new_err(format!(
-                    "out must have some of {names}, got \"{key}\""
-                )));
-            }
+        let given = (columns.iter())
+            .map(|(name, _)| dict.get_item(name))
+            .collect::<PyResult<Vec<_>>>()?;
+        // Strings of all keys would take a sixth of a call on one direction.
+        if given.iter().flatten().count() < dict.len() {
+            return Err(unknown(&dict, columns));
         }
         let (mut borrowed, mut all) = (Vec::new(), Vec::new());
-        for (name, rows) in columns {
-            let Some(any) = dict.get_item(name)? else {
+        for ((name, rows), any) in columns.iter().zip(&given) {
+            let Some(any) = any else {
                 all.push([core::ptr::null_mut(); 3]);
                 continue;
             };
-            let name = format!("out[\"{name}\"]");
-            let array = cast(&name, *rows, Some(n), &any)?;
+            let array = cast(&format_args!("out[\"{name}\"]"), *rows, Some(n), any)?;
             let array = array.try_readwrite().map_err(|_| {
                 PyValueError::new_err(format!(
-                    "{name} must be writeable and share no memory with another column"
+                    "out[\"{name}\"] must be writeable and share no memory with another column"
                 ))
             })?;
             all.push(rows_of(array.data().cast_const(), n).map(<*const f32>::cast_mut));
@@ -202,6 +199,22 @@ impl<'py> Outputs<'py> {
             _borrowed: borrowed,
             rows: all,
         })
+    }
+}
+
+/// Returns the error for a dictionary with a key that names no column.
+fn unknown(dict: &Bound<'_, PyDict>, columns: &[(&str, usize)]) -> PyErr {
+    let names: Vec<_> = columns.iter().map(|(name, _)| *name).collect();
+    let keys = (dict.keys().iter())
+        .map(|key| key.extract::<String>())
+        .collect::<PyResult<Vec<_>>>();
+    match keys {
+        Ok(mut keys) => {
+            keys.retain(|key| !names.contains(&key.as_str()));
+            let (names, keys) = (names.join(", "), keys.join("\", \""));
+            PyValueError::new_err(format!("out must have some of {names}, got \"{keys}\""))
+        }
+        Err(error) => error,
     }
 }
 
