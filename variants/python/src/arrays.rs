@@ -177,7 +177,16 @@ impl<'py> Outputs<'py> {
             .collect::<PyResult<Vec<_>>>()?;
         // Strings of all keys would take a sixth of a call on one direction.
         if given.iter().flatten().count() < dict.len() {
-            return Err(unknown(&dict, columns));
+            for key in dict.keys() {
+                let key: String = key.extract()?;
+                if !columns.iter().any(|(name, _)| *name == key) {
+                    let names: Vec<_> = columns.iter().map(|(name, _)| *name).collect();
+                    let names = names.join(", ");
+                    return Err(PyValueError::new_err(format!(
+                        "out must have some of {names}, got \"{key}\""
+                    )));
+                }
+            }
         }
         let (mut borrowed, mut all) = (Vec::new(), Vec::new());
         for ((name, rows), any) in columns.iter().zip(&given) {
@@ -199,22 +208,6 @@ impl<'py> Outputs<'py> {
             _borrowed: borrowed,
             rows: all,
         })
-    }
-}
-
-/// Returns the error for a dictionary with a key that names no column.
-fn unknown(dict: &Bound<'_, PyDict>, columns: &[(&str, usize)]) -> PyErr {
-    let names: Vec<_> = columns.iter().map(|(name, _)| *name).collect();
-    let keys = (dict.keys().iter())
-        .map(|key| key.extract::<String>())
-        .collect::<PyResult<Vec<_>>>();
-    match keys {
-        Ok(mut keys) => {
-            keys.retain(|key| !names.contains(&key.as_str()));
-            let (names, keys) = (names.join(", "), keys.join("\", \""));
-            PyValueError::new_err(format!("out must have some of {names}, got \"{keys}\""))
-        }
-        Err(error) => error,
     }
 }
 
