@@ -11,7 +11,7 @@ use hairis_instruments::stats::{Estimate, Moments};
 #[cfg(test)]
 use std::collections::HashMap;
 #[cfg(test)]
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
 /// Returns `numerator / pdf`, or 0 if the density is 0, because nothing is drawn there and the contribution is 0 too.
 fn over(numerator: f64, pdf: f64) -> f64 {
@@ -53,21 +53,19 @@ fn second_moment(
 
 /// Integrals that were computed before. Tests run the tables a dozen times, and the integrals would take most of their time.
 #[cfg(test)]
-struct Known<T>(OnceLock<Mutex<HashMap<String, Arc<OnceLock<T>>>>>);
+struct Known<T>(LazyLock<Mutex<HashMap<String, Arc<OnceLock<T>>>>>);
 
 #[cfg(test)]
 impl<T: Copy> Known<T> {
     const fn new() -> Self {
-        Self(OnceLock::new())
+        Self(LazyLock::new(Mutex::default))
     }
 
     /// Returns the integral of this name, which `integrate` computes once.
     fn get(&self, name: &str, integrate: impl FnOnce() -> T) -> T {
         // The key has the number of threads, because a test checks that results do not depend on it.
         let key = format!("{} {name}", rayon::current_num_threads());
-        let mut known = (self.0.get_or_init(Mutex::default))
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let of_key = Arc::clone(known.entry(key).or_default());
         drop(known);
         *of_key.get_or_init(integrate)
@@ -87,13 +85,20 @@ pub(crate) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
     KNOWN.get(&format!("{case:?} {light:?}"), || integrated(case, light))
 }
 
+/// Returns the integrator for second moments with the density of `sampler`, which ends after 500 panels.
+///
+/// A light that integrates over itself has edges along the jumps of a matched density. Four hundred times as many panels take the area
+/// light 20 s and change its figure by 8e-7. Lights that cover the sphere converge before.
+fn bounded(case: &Case, sampler: Sampler) -> SphereIntegrator {
+    let mut sphere = case.sphere(sampler).clone();
+    sphere.tolerance.max_panels = 500;
+    sphere
+}
+
 fn integrated(case: &Case, light: &dyn Light) -> Reference {
     let (mean, _) = mean_by_quadrature(case, light);
     let v = SAMPLERS.map(|sampler| {
-        let mut sphere = case.sphere(sampler).clone();
-        // A light that integrates over itself has edges along the jumps of a matched density. Four hundred times as many panels take the
-        // area light 20 s and change its figure by 8e-7. Lights that cover the sphere converge before.
-        sphere.tolerance.max_panels = 500;
+        let sphere = bounded(case, sampler);
         let second = second_moment(case, light, &sphere, &|dir| case.density(sampler, dir));
         second / (mean.value * mean.value) - 1.0
     });
@@ -116,8 +121,7 @@ pub(crate) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
 #[cfg(test)]
 pub(crate) fn ray_v(case: &Case, light: &dyn Light, sampler: Sampler) -> [f64; 2] {
     let both = |dir: DVec3| case.density(sampler, dir) + light.pdf(dir);
-    let mut sphere = case.sphere(sampler).clone();
-    sphere.tolerance.max_panels = 500;
+    let sphere = bounded(case, sampler);
     let share = |dir: DVec3| {
         case.oracle_value(dir)
             .map(|s| over(s * case.density(sampler, dir), both(dir)))
