@@ -1,5 +1,6 @@
 //! Handles as the host stores them: a head with the model's tag, and the Rust handle behind it. Every material has the constants that
-//! conserve energy, although they change nothing in a raw material, because a second type would double the code.
+//! conserve energy, although they change nothing in a raw material, because a second type would double the code. Only calls on hits
+//! leave them out.
 
 use crate::layout::{BSDF_SIZE, HEAD_SIZE, MATERIAL_SIZE, RawBsdf, RawMaterial};
 use crate::models::tagged;
@@ -35,6 +36,12 @@ pub(crate) const fn assert_fits<M: Registered>() {
 pub(crate) unsafe fn model_of(material: *const RawMaterial) -> Option<ModelId> {
     // SAFETY: the caller's promise.
     tagged(unsafe { (&raw const (*material).head).cast::<u32>().read() })
+}
+
+/// Returns true if a material does not conserve energy.
+pub(crate) unsafe fn is_raw(material: *const RawMaterial) -> bool {
+    // SAFETY: the caller's promise.
+    unsafe { (*material).head[1] == 1 }
 }
 
 /// Returns the model of a BSDF, or `None` if the BSDF is empty.

@@ -4,12 +4,14 @@
 use crate::columns::{
     CHUNK, are_candidates, are_there, discard, evals, input, input3, output, samples,
 };
-use crate::handles::{material, model_of};
+use crate::handles::{is_raw, material, model_of};
 use crate::layout::{ARGUMENT, Evals, Hits, OK, RawMaterial, Samples};
 use crate::models::visit;
 use core::ptr;
 use core::slice::from_raw_parts;
+use hairis::Material;
 use hairis::columns::{EvalColumns, HitColumns, SampleColumns, in_groups};
+use hairis::model::Model;
 use hairis_variants::ModelId;
 
 /// Columns that a call writes, for evaluations or for samples.
@@ -73,32 +75,51 @@ unsafe fn optional3<'a>(to: [*mut f32; 3], n: usize) -> Option<[&'a mut [f32]; 3
 }
 
 /// Runs a call over consecutive hits on one material.
+///
+/// Raw hits have kernels of their own, because the constants that change nothing cost up to a fifth of their time. With every sampler
+/// these kernels would make the library too large.
 unsafe fn run(id: ModelId, raw: *const RawMaterial, rows: *const Rows, n: usize) {
     visit!(id, M, (raw: *const RawMaterial, rows: *const Rows, n: usize) -> (), {
         // SAFETY: the tag is the model's; the caller's promise.
         unsafe {
             let (material, rows) = (material::<M>(raw), &*rows);
-            let h = (!rows.h.is_null()).then(|| input(rows.h, n));
-            let (hits, query) = (HitColumns { wo: input3(rows.wo, 0, n), h }, input3(rows.query, 0, n));
-            // All columns have `n` numbers.
-            let _ = match rows.call {
-                Call::Eval([r, g, b, pdf]) => {
-                    let out = EvalColumns { value: optional3([r, g, b], n), pdf: optional(pdf, n) };
-                    material.eval_hits(hits, query, out)
-                }
-                Call::Sample([u, v, w, r, g, b, pdf, wr, wg, wb, slot]) => {
-                    let out = SampleColumns {
-                        wi: optional3([u, v, w], n),
-                        value: optional3([r, g, b], n),
-                        pdf: optional(pdf, n),
-                        weight: optional3([wr, wg, wb], n),
-                        slot: optional(slot, n),
-                    };
-                    material.sample_hits(hits, query, out)
-                }
-            };
+            if const { cfg!(not(feature = "every-sampler")) && !M::CONSERVES } && is_raw(raw) {
+                run_on(&material.inner(), rows, n);
+            } else {
+                run_on(material, rows, n);
+            }
         }
     });
+}
+
+/// Runs a call over consecutive hits on a material of Rust.
+unsafe fn run_on<M: Model>(material: &Material<M>, rows: &Rows, n: usize) {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let h = (!rows.h.is_null()).then(|| input(rows.h, n));
+        let (wo, query) = (input3(rows.wo, 0, n), input3(rows.query, 0, n));
+        let hits = HitColumns { wo, h };
+        // All columns have `n` numbers.
+        let _ = match rows.call {
+            Call::Eval([r, g, b, pdf]) => {
+                let out = EvalColumns {
+                    value: optional3([r, g, b], n),
+                    pdf: optional(pdf, n),
+                };
+                material.eval_hits(hits, query, out)
+            }
+            Call::Sample([u, v, w, r, g, b, pdf, wr, wg, wb, slot]) => {
+                let out = SampleColumns {
+                    wi: optional3([u, v, w], n),
+                    value: optional3([r, g, b], n),
+                    pdf: optional(pdf, n),
+                    weight: optional3([wr, wg, wb], n),
+                    slot: optional(slot, n),
+                };
+                material.sample_hits(hits, query, out)
+            }
+        };
+    }
 }
 
 /// Returns true if all three columns are given, or none of them.

@@ -211,7 +211,7 @@ structs! {
     /// Material of any model: a head with the tag, and the Rust handle behind it.
     #[repr(align(16))]
     RawMaterial = "hairis_material" {
-        /// Tag of the model.
+        /// Tag of the model, and 1 for a material without energy conservation or 0.
         head: [u32; 4],
         /// Constants of the material.
         body: [u8; MATERIAL_SIZE - HEAD_SIZE],

@@ -396,7 +396,8 @@ pub unsafe extern "C" fn hairis_material_init(
         // SAFETY: the caller's promise; the handle fits.
         unsafe {
             to.write_bytes(0, 1);
-            (&raw mut (*to).head).write([models::tag(ModelId::of::<M>()), 0, 0, 0]);
+            let is_raw = u32::from(energy != ENERGY_CONSERVING);
+            (&raw mut (*to).head).write([models::tag(ModelId::of::<M>()), is_raw, 0, 0]);
             (&raw mut (*to).body).cast::<Material<Conserving<M>>>().write(material);
         }
         Ok(())
