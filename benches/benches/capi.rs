@@ -180,14 +180,27 @@ impl<R: Model> Pair<'_, R> {
             (|i| sample(&raw, xi[i]), c_sample_bits),
             (|i| black_box(&bsdf).sample(xi[i]), sample_bits),
         );
+        let eval = |i| eval(&library.prepare(c, wo[i]), wi[i]);
+        let sample = |i| sample(&library.prepare(c, wo[i]), xi[i]);
+        let prepare = |i| black_box(rust).prepare(wo[i]);
+        self.scalar(
+            "prepare and eval_pdf",
+            (eval, c_eval_bits),
+            (|i| prepare(i).eval_pdf(wi[i]), eval_bits),
+        );
+        self.scalar(
+            "prepare and sample",
+            (sample, c_sample_bits),
+            (|i| prepare(i).sample(xi[i]), sample_bits),
+        );
         self.scalar(
             "prepare and eval_pdf over eval_hit",
-            (|i| eval(&library.prepare(c, wo[i]), wi[i]), c_eval_bits),
+            (eval, c_eval_bits),
             (|i| black_box(rust).eval_hit(wo[i], wi[i]), eval_bits),
         );
         self.scalar(
             "prepare and sample over sample_hit",
-            (|i| sample(&library.prepare(c, wo[i]), xi[i]), c_sample_bits),
+            (sample, c_sample_bits),
             (|i| black_box(rust).sample_hit(wo[i], xi[i]), sample_bits),
         );
     }
