@@ -21,7 +21,7 @@ check hairis '' serde trace
 check hairis-reference ''
 check hairis-variants '' any serde any,serde any,every-sampler
 # In a profile that aborts: without std nothing can unwind.
-for features in '' std every-sampler; do
+for features in '' std every-sampler raw-hits; do
   cargo check -q --locked --profile capi -p hairis-capi --no-default-features --features "$features" || { echo "FAIL hairis-capi with '$features'"; exit 1; }
   echo "hairis-capi with '$features'"
 done

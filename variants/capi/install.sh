@@ -1,10 +1,11 @@
 #!/bin/bash
 # Builds the C library, and installs it with its headers, pkg-config file and CMake package: install.sh PREFIX [FEATURES]. FEATURES
-# are those of Cargo.toml: "every-sampler" for samplers that few programs need, at twice the size, "std" for a message where a panic
-# ends the program. DESTDIR is put before PREFIX, as packagers expect. Needs cargo and a C compiler.
+# are those of Cargo.toml, separated by commas: "raw-hits", which is the default, for raw hits in less time; "every-sampler" for samplers
+# that few programs need, at twice the size; "std" for a message where a panic ends the program. DESTDIR is put before PREFIX, as
+# packagers expect. Needs cargo and a C compiler.
 set -euo pipefail
 [ $# -ge 1 ] && [ $# -le 2 ] || { echo "usage: install.sh PREFIX [FEATURES]" >&2; exit 2; }
-prefix=$(realpath -m "$1") features=${2:-}
+prefix=$(realpath -m "$1") features=${2-raw-hits}
 cd "$(dirname "$0")"
 target=$(realpath -m "${CARGO_TARGET_DIR:-../../target}")/capi-install
 # Both libraries at once, and not the Rust library, with which cargo would not optimise at link time.

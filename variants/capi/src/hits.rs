@@ -76,14 +76,14 @@ unsafe fn optional3<'a>(to: [*mut f32; 3], n: usize) -> Option<[&'a mut [f32]; 3
 
 /// Runs a call over consecutive hits on one material.
 ///
-/// Raw hits have kernels of their own, because the constants that change nothing cost up to a fifth of their time. With every sampler
-/// these kernels would make the library too large.
+/// With the feature `raw-hits` hits on raw materials have kernels of their own, because the constants that change nothing cost up to a
+/// fifth of their time.
 unsafe fn run(id: ModelId, raw: *const RawMaterial, rows: *const Rows, n: usize) {
     visit!(id, M, (raw: *const RawMaterial, rows: *const Rows, n: usize) -> (), {
         // SAFETY: the tag is the model's; the caller's promise.
         unsafe {
             let (material, rows) = (material::<M>(raw), &*rows);
-            if const { cfg!(not(feature = "every-sampler")) && !M::CONSERVES } && is_raw(raw) {
+            if const { cfg!(feature = "raw-hits") && !M::CONSERVES } && is_raw(raw) {
                 run_on(&material.inner(), rows, n);
             } else {
                 run_on(material, rows, n);
