@@ -1,6 +1,7 @@
 //! Columns of NumPy arrays, which are borrowed and never copied.
 
 use core::fmt::Display;
+use core::ptr;
 use hairis_capi::layout::{Evals, Samples};
 use numpy::{
     PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
@@ -8,18 +9,42 @@ use numpy::{
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyString};
 
-/// Columns of an evaluation, with the number of rows of each.
-pub(crate) const EVALS: [(&str, usize); 2] = [("value", 3), ("pdf", 1)];
-/// Columns of samples, with the number of rows of each.
-pub(crate) const SAMPLES: [(&str, usize); 5] = [
+/// Names of the columns that a call writes, with the number of rows of each.
+pub(crate) struct Columns<const N: usize> {
+    columns: [(&'static str, usize); N],
+    /// The names as strings of Python, of which every call would otherwise make new ones.
+    keys: PyOnceLock<[Py<PyString>; N]>,
+}
+
+impl<const N: usize> Columns<N> {
+    pub(crate) const fn new(columns: [(&'static str, usize); N]) -> Self {
+        Self {
+            columns,
+            keys: PyOnceLock::new(),
+        }
+    }
+
+    fn keys(&self, py: Python<'_>) -> &[Py<PyString>; N] {
+        self.keys.get_or_init(py, || {
+            self.columns
+                .map(|(name, _)| PyString::intern(py, name).unbind())
+        })
+    }
+}
+
+/// Columns of an evaluation.
+pub(crate) static EVALS: Columns<2> = Columns::new([("value", 3), ("pdf", 1)]);
+/// Columns of samples.
+pub(crate) static SAMPLES: Columns<5> = Columns::new([
     ("wi", 3),
     ("value", 3),
     ("pdf", 1),
     ("weight", 3),
     ("lobe", 1),
-];
+]);
 
 fn shape(rows: usize, n: Option<usize>) -> String {
     let n = n.map_or_else(|| "N".to_owned(), |n| n.to_string());
@@ -31,18 +56,14 @@ fn shape(rows: usize, n: Option<usize>) -> String {
 }
 
 /// Converts the columns of an evaluation to the struct of the C interface.
-pub(crate) fn evals(outputs: &Outputs<'_>) -> Evals {
-    let [value, [pdf, ..]] = outputs.rows[..] else {
-        unreachable!("two columns")
-    };
+pub(crate) fn evals(outputs: &Outputs<'_, 2>) -> Evals {
+    let [value, [pdf, ..]] = outputs.rows;
     Evals { value, pdf }
 }
 
 /// Converts the columns of samples to the struct of the C interface.
-pub(crate) fn samples(outputs: &Outputs<'_>) -> Samples {
-    let [wi, value, pdf, weight, lobe] = outputs.rows[..] else {
-        unreachable!("five columns")
-    };
+pub(crate) fn samples(outputs: &Outputs<'_, 5>) -> Samples {
+    let [wi, value, pdf, weight, lobe] = outputs.rows;
     Samples {
         wi,
         value,
@@ -145,63 +166,61 @@ impl<'py> Input<'py> {
 }
 
 /// Columns that a call writes.
-pub(crate) struct Outputs<'py> {
+pub(crate) struct Outputs<'py, const N: usize> {
     /// Columns by name, for the caller.
     pub(crate) dict: Bound<'py, PyDict>,
     /// Borrows that are held so that nothing else reads or writes the columns.
-    _borrowed: Vec<PyReadwriteArrayDyn<'py, f32>>,
+    _borrowed: [Option<PyReadwriteArrayDyn<'py, f32>>; N],
     /// Rows of each column, null if the column is left out.
-    pub(crate) rows: Vec<[*mut f32; 3]>,
+    pub(crate) rows: [[*mut f32; 3]; N],
 }
 
-impl<'py> Outputs<'py> {
+impl<'py, const N: usize> Outputs<'py, N> {
     /// Makes new columns of every name, or borrows the columns of `out`.
     pub(crate) fn new(
         py: Python<'py>,
         out: Option<&Bound<'py, PyDict>>,
-        columns: &[(&str, usize)],
+        names: &Columns<N>,
         n: usize,
     ) -> PyResult<Self> {
+        let (columns, keys) = (&names.columns, names.keys(py));
         let dict = out.cloned().unwrap_or_else(|| PyDict::new(py));
         if out.is_none() {
-            for (name, rows) in columns {
+            for ((_, rows), key) in columns.iter().zip(keys) {
                 if *rows == 3 {
-                    dict.set_item(name, PyArray2::<f32>::zeros(py, [3, n], false))?;
+                    dict.set_item(key, PyArray2::<f32>::zeros(py, [3, n], false))?;
                 } else {
-                    dict.set_item(name, PyArray1::<f32>::zeros(py, n, false))?;
+                    dict.set_item(key, PyArray1::<f32>::zeros(py, n, false))?;
                 }
             }
         }
-        let given = (columns.iter())
-            .map(|(name, _)| dict.get_item(name))
-            .collect::<PyResult<Vec<_>>>()?;
+        let mut given = [const { None }; N];
+        for (given, key) in given.iter_mut().zip(keys) {
+            *given = dict.get_item(key)?;
+        }
         // Strings of all keys would take a sixth of a call on one direction.
         if given.iter().flatten().count() < dict.len() {
             for key in dict.keys() {
                 let key: String = key.extract()?;
                 if !columns.iter().any(|(name, _)| *name == key) {
-                    let names: Vec<_> = columns.iter().map(|(name, _)| *name).collect();
-                    let names = names.join(", ");
+                    let names = columns.map(|(name, _)| name).join(", ");
                     return Err(PyValueError::new_err(format!(
                         "out must have some of {names}, got \"{key}\""
                     )));
                 }
             }
         }
-        let (mut borrowed, mut all) = (Vec::new(), Vec::new());
-        for ((name, rows), any) in columns.iter().zip(&given) {
-            let Some(any) = any else {
-                all.push([core::ptr::null_mut(); 3]);
-                continue;
-            };
+        let (mut borrowed, mut all) = ([const { None }; N], [[ptr::null_mut(); 3]; N]);
+        for (i, (name, rows)) in columns.iter().enumerate() {
+            let Some(any) = &given[i] else { continue };
             let array = cast(&format_args!("out[\"{name}\"]"), *rows, Some(n), any)?;
             let array = array.try_readwrite().map_err(|_| {
                 PyValueError::new_err(format!(
                     "out[\"{name}\"] must be writeable and share no memory with another column"
                 ))
             })?;
-            all.push(rows_of(array.data().cast_const(), n).map(<*const f32>::cast_mut));
-            borrowed.push(array);
+            all[i] = rows_of(array.data().cast_const(), n).map(<*const f32>::cast_mut);
+            borrowed[i] = Some(array);
         }
         Ok(Self {
             dict,

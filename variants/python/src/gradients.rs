@@ -1,6 +1,6 @@
 //! Derivatives of values by the fields of a material, by directions and by offsets across the fibre.
 
-use crate::arrays::Input;
+use crate::arrays::{Columns, Input};
 use hairis::columns::HitColumns;
 use hairis::model::Model;
 use hairis::{Gaussian, Matched, ParamError, Published};
@@ -9,9 +9,9 @@ use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Parameters,
 use pyo3::PyErr;
 use pyo3::exceptions::PyValueError;
 
-/// Columns of derivatives, with the number of rows of each.
-pub(crate) const GRADIENTS: [(&str, usize); 4] =
-    [("value", 3), ("d_wo", 3), ("d_wi", 3), ("d_h", 1)];
+/// Columns of derivatives.
+pub(crate) static GRADIENTS: Columns<4> =
+    Columns::new([("value", 3), ("d_wo", 3), ("d_wi", 3), ("d_h", 1)]);
 
 /// Reasons for which a call has no derivatives.
 pub(crate) enum Refusal {
