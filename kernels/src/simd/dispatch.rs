@@ -219,13 +219,12 @@ fn run_portable<K: Kernel>(kernel: K) -> K::Output {
 #[inline(always)]
 fn align_frame<Register>() {
     let register = MaybeUninit::<Register>::uninit();
-    // SAFETY: there is no code.
-    #[cfg(not(miri))]
-    unsafe {
-        asm!("/* {} */", in(reg) &raw const register, options(readonly, nostack, preserves_flags));
+    if cfg!(not(miri)) {
+        // SAFETY: there is no code.
+        unsafe {
+            asm!("/* {} */", in(reg) &raw const register, options(readonly, nostack, preserves_flags));
+        }
     }
-    #[cfg(miri)]
-    let _ = register;
 }
 
 /// Functions that compute the rows of an instruction set.
