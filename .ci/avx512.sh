@@ -68,8 +68,8 @@ if [ "${1:-}" != --bochs ] && has avx512f && has avx512vl && has avx512dq && has
 fi
 
 # Packages.
-apt-get update -qq
-apt-get install -qqy bochs bochs-term xorriso bsdutils > /dev/null
+.ci/apt update -qq
+.ci/apt install -qqy bochs bochs-term xorriso bsdutils > /dev/null
 kernel=$(apt-cache depends linux-image-cloud-amd64 | sed -n 's/.*Depends: \(linux-image-[0-9].*\)/\1/p' | head -1)
 mkdir "$dir/debs"
 chmod 755 "$dir"

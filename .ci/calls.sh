@@ -4,7 +4,7 @@
 # lines they would take up to 15% longer.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-command -v objdump >/dev/null || { apt-get update -qq && apt-get install -qqy binutils; }
+command -v objdump >/dev/null || { .ci/apt update -qq && .ci/apt install -qqy binutils; }
 program=$(.ci/release.sh)/hairis
 # Not counted: integrating the lobes of eight hits, which copies whole BSDFs; beside the integrals a copy is nothing.
 objdump -d --no-show-raw-insn -C "$program" | awk '

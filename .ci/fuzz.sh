@@ -11,7 +11,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/fuzz"
 . ../flags
-command -v g++ > /dev/null || { apt-get update -qq && apt-get install -qqy g++; }
+command -v g++ > /dev/null || { ../apt update -qq && ../apt install -qqy g++; }
 target=$(realpath -m "${CARGO_TARGET_DIR:-../../target}")/fuzz
 host=$(rustc -vV | sed -n 's/^host: //p')
 features=''

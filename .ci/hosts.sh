@@ -22,7 +22,7 @@ command -v cmake > /dev/null || packages+=(cmake)
 command -v pkg-config > /dev/null || packages+=(pkg-config)
 command -v valgrind > /dev/null || packages+=(valgrind)
 ls /usr/lib/*/libLLVM.so.[0-9]* > /dev/null 2>&1 || packages+=(libllvm19)
-[ ${#packages[@]} = 0 ] || { apt-get update -qq && apt-get install -qqy "${packages[@]}" > /dev/null; }
+[ ${#packages[@]} = 0 ] || { .ci/apt update -qq && .ci/apt install -qqy "${packages[@]}" > /dev/null; }
 python=$work/venv/bin/python
 [ -x "$python" ] || python3 -m venv "$work/venv"
 "$python" -m pip install -q 'maturin>=1.9,<2' numpy mypy pytest matplotlib jax 'mitsuba==3.9.1' 'nanobind>=2'

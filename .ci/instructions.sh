@@ -14,7 +14,7 @@ cd "$(dirname "$0")/.."
 table=benches/records/instructions.csv
 passes=4
 
-command -v valgrind > /dev/null || { apt-get update -qq && apt-get install -qqy valgrind; }
+command -v valgrind > /dev/null || { .ci/apt update -qq && .ci/apt install -qqy valgrind; }
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 if [ "${1:-}" = --count ]; then

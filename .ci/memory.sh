@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/memory"
 . ../flags
-command -v valgrind > /dev/null || { apt-get update -qq && apt-get install -qqy valgrind; }
+command -v valgrind > /dev/null || { ../apt update -qq && ../apt install -qqy valgrind; }
 target=$(realpath -m "${CARGO_TARGET_DIR:-../../target}")/memory
 host=$(rustc -vV | sed -n 's/^host: //p')
 log=$(mktemp)

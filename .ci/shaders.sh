@@ -15,7 +15,7 @@ for tool in clang glslangValidator spirv-val; do command -v "$tool" > /dev/null 
 [ -e /usr/include/vulkan/vulkan.h ] || missing=yes
 compgen -G '/usr/share/vulkan/icd.d/lvp_icd*.json' > /dev/null || missing=yes
 if [ -n "${missing:-}" ]; then
-  { apt-get update -qq && apt-get install -qqy --no-install-recommends clang glslang-tools spirv-tools libvulkan-dev \
+  { .ci/apt update -qq && .ci/apt install -qqy --no-install-recommends clang glslang-tools spirv-tools libvulkan-dev \
       mesa-vulkan-drivers; } > /dev/null 2>&1 || echo "some tools are missing: their tests are skipped"
 fi
 export HAIRIS_CASES=${1:-4096}

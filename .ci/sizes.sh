@@ -10,7 +10,7 @@
 #   .ci/sizes.sh --time    time of every entry point at "s" and "z" against 3, programs interleaved
 set -euo pipefail
 cd "$(dirname "$0")/.."
-command -v objdump > /dev/null || { apt-get update -qq && apt-get install -qqy binutils; }
+command -v objdump > /dev/null || { .ci/apt update -qq && .ci/apt install -qqy binutils; }
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 
