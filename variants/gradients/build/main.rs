@@ -66,9 +66,9 @@ impl Visitor for Print<'_> {
                 read: &read,
             };
             let [(fused, kept), (exact, also_kept)] =
-                [&fused, &exact].map(|gradient| body(gradient, results, &inputs, &mut slots));
+                [&fused, &exact].map(|gradient| chunks(gradient, results, &inputs, &mut slots));
             let kept = kept.max(also_kept);
-            let body = format!("if const {{ L::FUSES }} {{\n{fused}}} else {{\n{exact}}}");
+            let body = body(&fused, &exact);
             let place = bodies.iter().position(|known| *known == body);
             let place = place.unwrap_or_else(|| {
                 let place = bodies.len();
@@ -81,7 +81,8 @@ impl Visitor for Print<'_> {
                      impl Rows<{s}, {n}, {kept}> for Body{place} {{\n\
                      const SLOTS: &[Slot; {s}] = &[{numbers}];\n#[inline(always)]\n\
                      fn rows<L: Lanes<Stored = f32x8>>(c: &[f32x8; {s}], packets: &mut [[f32x8; {kept}]], sums: &mut [f32x8; {n}], \
-                     finite: &mut f32x8) {{\n{LINTED}\n{{\n{body}}}\n}}\n}}"
+                     finite: &mut f32x8) {{\n{LINTED}\n{{\n\
+                     type C = [f32x8; {s}];\ntype P = [[f32x8; {kept}]];\ntype S = [f32x8; {n}];\n{body}}}\n}}\n}}"
                 );
                 bodies.push(body);
                 place
@@ -149,15 +150,38 @@ fn read(functions: &[&Function], numbers: usize) -> Vec<usize> {
     read.into_iter().collect()
 }
 
-/// Returns the statements of a derivative, and the count of the numbers that a packet keeps: its inputs, its outputs, and the results
-/// that a later chunk reads. Each chunk is a loop over packets, whose operations do not wait for those of another packet, so that a CPU
-/// works on two of them at once. The sums of derivatives by the material grow from packet to packet.
-fn body(
+/// Prints the chunks of both graphs, each as a function that is inlined, and their calls. Compilers check one function of ten thousand
+/// operations three times as long.
+fn body(fused: &[String], exact: &[String]) -> String {
+    let mut out = String::new();
+    let [fused, exact] = [("fused", fused), ("exact", exact)].map(|(name, chunks)| {
+        let mut calls = String::new();
+        for (number, chunk) in chunks.iter().enumerate() {
+            let _ = writeln!(
+                out,
+                "#[inline(always)]\nfn {name}{number}<L: Lanes<Stored = f32x8>>(c: &C, packets: &mut P, sums: &mut S, finite: &mut f32x8) \
+                 {{\n{chunk}}}"
+            );
+            let _ = writeln!(calls, "{name}{number}::<L>(c, packets, sums, finite);");
+        }
+        calls
+    });
+    let _ = writeln!(
+        out,
+        "if const {{ L::FUSES }} {{\n{fused}}} else {{\n{exact}}}"
+    );
+    out
+}
+
+/// Returns the statements of a derivative chunk by chunk, and the count of the numbers that a packet keeps: its inputs, its outputs, and
+/// the results that a later chunk reads. Each chunk is a loop over packets, whose operations do not wait for those of another packet, so
+/// that a CPU works on two of them at once. The sums of derivatives by the material grow from packet to packet.
+fn chunks(
     gradient: &Function,
     results: usize,
     inputs: &Inputs<'_>,
     slots: &mut Slots,
-) -> (String, usize) {
+) -> (Vec<String>, usize) {
     let graph = gradient.graph();
     let rows = gradient.results().iter();
     let rows: Vec<u32> = rows.map(|row| unchecked(gradient, *row)).collect();
@@ -180,7 +204,7 @@ fn body(
     // Uses of rows: at once, or at the end for rows that no operation computes.
     let uses: Vec<(u32, String)> = sums.chain(outputs).collect();
     let mut chunks = Chunks::new(graph, &rows, INPUTS + OUTPUTS);
-    let mut out = String::new();
+    let mut out = Vec::new();
     while let Some(places) = chunks.next_chunk() {
         let mut text = String::new();
         for place in places {
@@ -217,18 +241,19 @@ fn body(
         } else {
             text = format!("for k in packets.iter_mut() {{\n{text}}}\n");
         }
-        out += &text;
+        out.push(text);
     }
-    out += "for k in packets.iter_mut() {\n";
+    let mut last = String::from("for k in packets.iter_mut() {\n");
     for (row, line) in &uses {
         if !graph.node(*row).is_computed() {
-            out += &line.replace("$x", &operand(gradient, *row, inputs, slots));
+            last += &line.replace("$x", &operand(gradient, *row, inputs, slots));
         }
     }
     for place in results..RESULTS {
-        let _ = writeln!(out, "k[{}] = L::splat(0.0).store();", INPUTS + place);
+        let _ = writeln!(last, "k[{}] = L::splat(0.0).store();", INPUTS + place);
     }
-    (out + "}\n", chunks.len())
+    out.push(last + "}\n");
+    (out, chunks.len())
 }
 
 /// Prints the statements in groups. In a debugger, the scope of each name is nested in the scope of the name before. Compilers support a
