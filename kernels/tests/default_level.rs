@@ -3,7 +3,7 @@
 use crate::support::{Draws, direction, lanes_of, packet};
 use hairis::params::HairDesc;
 use hairis::simd::Level;
-use hairis::{Gaussian, HairParams, Material, Material8, Published};
+use hairis::{Gaussian, HairParams, Hit8, Material, Material8, Published};
 
 #[test]
 fn packets_without_a_level_run_on_the_one_found() {
@@ -25,6 +25,7 @@ fn packets_without_a_level_run_on_the_one_found() {
             packet(&v)
         };
         let [wo, wi] = [eight(), eight()];
+        let hits = &Hit8::from(&wo);
         let xi = lanes_of(&core::array::from_fn(|_| draws.xi3()));
         macro_rules! same {
             ($of:ident.$call:ident($($argument:expr)?)) => {
@@ -37,9 +38,13 @@ fn packets_without_a_level_run_on_the_one_found() {
                 );
             };
         }
-        same!(a.prepare8(&wo));
-        same!(packed.prepare8(&wo));
-        let mixed = packed.prepare8(&wo);
+        assert_eq!(
+            format!("{:?}", a.prepare8(&wo)),
+            format!("{:?}", a.with_level(level).prepare8(hits)),
+            "a.prepare8 of {wo:?}"
+        );
+        same!(packed.prepare8(hits));
+        let mixed = packed.prepare8(hits);
         same!(mixed.eval_pdf8(&wi));
         same!(mixed.sample8(&xi));
         same!(mixed.lobes8(&wi));

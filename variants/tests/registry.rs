@@ -4,7 +4,7 @@ use crate::support::{Draws, direction, lanes_of, packet};
 use glam::Vec3;
 use hairis::params::Rule;
 use hairis::simd::Level;
-use hairis::{Conserving, HairParams, Hit, Lobe, LobeMask, Material, Material8, ParamError};
+use hairis::{Conserving, HairParams, Hit, Hit8, Lobe, LobeMask, Material, Material8, ParamError};
 use hairis_variants::{
     AnyMaterial8, ChiangDesc, ChiangParams, Field, KajiyaKayParams, Kind, ModelId, Parameters,
     Registered, Visitor,
@@ -126,7 +126,10 @@ impl Visitor for Compare {
             .map(|(_, params)| *params)
             .collect();
         let presets: [M::Params; 8] = core::array::from_fn(|i| presets[i % presets.len()]);
-        let materials = presets.map(|params| Material::new(&M::MODEL, &params));
+        // In the types of `Conserving`, as the list has them: this package has compiled them, and the kernels' tests compare their bits
+        // with those of the raw types.
+        let materials = presets
+            .map(|params| -> Material<Conserving<M>> { Material::new(&M::MODEL, &params).into() });
         let any = presets.map(|params| id.material(&params.values()).expect("a preset is legal"));
         let mut some = || direction(draws.between(-1.5, 1.5), draws.between(-3.1, 3.1));
         let (wo, wi): ([Vec3; 8], [Vec3; 8]) = (
@@ -141,6 +144,7 @@ impl Visitor for Compare {
         let (one, chosen) = (materials[0].prepare(hit), any[0].prepare(hit));
         assert_eq!(chosen.model(), id, "the entry it came from");
         let (wi8, xi8) = (packet(&wi), lanes_of(&xi));
+        let hits = &Hit8::from(&packet(&wo));
         // The handles forward every call through one reference, so one call of each kind shows that it arrives.
         for lobes in [LobeMask::ALL, LobeMask::of(&[Lobe::slot(0)])] {
             let (one, chosen) = (one.with_lobes(lobes), chosen.with_lobes(lobes));
@@ -156,10 +160,10 @@ impl Visitor for Compare {
             }
         }
 
-        let eight = Material8::pack(materials.each_ref()).prepare8(&packet(&wo));
+        let eight = Material8::pack(materials.each_ref()).prepare8(hits);
         let chosen = AnyMaterial8::pack(any.each_ref())
             .expect("of one model")
-            .prepare8(&packet(&wo));
+            .prepare8(hits);
         for level in Level::available() {
             let (eight, chosen) = (eight.with_level(level), chosen.with_level(level));
             same!(chosen, eight; eval_pdf8(&wi8));
@@ -180,10 +184,10 @@ impl Visitor for Compare {
             same!(chosen, one; eval_pdf(wi[0]));
             same!(chosen, one; albedo());
         }
-        let eight = Material8::pack(conserving.each_ref()).prepare8(&packet(&wo));
+        let eight = Material8::pack(conserving.each_ref()).prepare8(hits);
         let chosen = AnyMaterial8::pack(any.each_ref())
             .expect("of one model")
-            .prepare8(&packet(&wo));
+            .prepare8(hits);
         same!(chosen, eight; eval_pdf8(&wi8));
         same!(chosen, eight; albedo8());
     }
