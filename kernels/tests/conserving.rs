@@ -10,7 +10,7 @@ use hairis::{
 };
 use hairis_conformance::published::support::{DEG, Draws, direction, narrow, packet};
 use hairis_conformance::{Materials, Subject, hits, lanes};
-use hairis_variants::{Cauchy, ModelId, Parameters};
+use hairis_variants::Cauchy;
 
 /// Materials of each kind: 10,000 in `.ci/long.sh`.
 fn materials() -> usize {
@@ -92,11 +92,11 @@ fn channels(PerLobe(lobes): PerLobe<[f32x8; 3]>) -> [f32x8; 3] {
     [0, 1, 2].map(|c| lobes[0][c] + lobes[1][c] + lobes[2][c] + lobes[3][c])
 }
 
-/// Materials of a kind: at most 1.001 returns, the mean is that of the exact factors, and few integrate their lobes. The model is chosen
-/// at run time, because the list of models is compiled already.
-fn conserves(
+/// Materials of a kind: at most 1.001 returns, the mean is that of the exact factors, and few integrate their lobes. The raw
+/// material has the type of the other, which is compiled already.
+fn conserves<M: Model<Params = HairParams>>(
     name: &str,
-    model: ModelId,
+    model: M,
     draw: fn(&mut Draws) -> HairParams,
     integrating_at_most: f64,
 ) {
@@ -104,13 +104,14 @@ fn conserves(
     let (mut largest, mut mean_off, mut integrating) = (0.0_f32, 0.0_f64, 0_usize);
     for _ in 0..count {
         let params = draw(&mut draws);
-        let raw = model.material(&params.values()).unwrap();
-        let hair = raw.conserving();
+        let raw = Material::<Conserving<M>>::from(Material::new(&model, &params));
+        let hair = Material::new(&Conserving(model), &params);
         integrating += usize::from(hair.integrates());
         let (mut got, mut want) = (0.0_f64, 0.0_f64);
         for wo in &directions {
-            let albedo = channels(hair.prepare8(wo).albedo8());
-            let exact = channels(raw.prepare8(wo).albedo8());
+            let hits = &Hit8::from(wo);
+            let albedo = channels(hair.prepare8(hits).albedo8());
+            let exact = channels(raw.prepare8(hits).albedo8());
             for (albedo, exact) in albedo.iter().zip(&exact) {
                 for lane in 0..8 {
                     let (albedo, exact) = (albedo.as_array()[lane], exact.as_array()[lane]);
@@ -145,14 +146,14 @@ fn conserves(
 
 #[test]
 fn everyday_hair_conserves_energy_by_its_fit() {
-    conserves("everyday, Gaussian", ModelId::Gaussian, everyday, 0.05);
-    conserves("everyday, Cauchy", ModelId::Cauchy, everyday, 0.03);
+    conserves("everyday, Gaussian", Published(Gaussian), everyday, 0.05);
+    conserves("everyday, Cauchy", Cauchy::PAPER.model(), everyday, 0.03);
 }
 
 #[test]
 fn any_legal_hair_conserves_energy() {
-    conserves("legal, Gaussian", ModelId::Gaussian, legal, 0.8);
-    conserves("legal, Cauchy", ModelId::Cauchy, legal, 0.8);
+    conserves("legal, Gaussian", Published(Gaussian), legal, 0.8);
+    conserves("legal, Cauchy", Cauchy::PAPER.model(), legal, 0.8);
 }
 
 /// Hair of narrow bright lobes, for which no fit is accurate enough.
