@@ -55,17 +55,8 @@ impl<const BANDS: usize, const BY_CHANNEL: bool> FamilyModel for Bands<BANDS, BY
 conformance!(hair, Family::<PublishedHair>::new());
 conformance!(matched_5, AsConserving(Family::<Bands<5>>::new()), but hits);
 conformance!(matched_9, Family::<Bands<9>>::new());
+conformance!(matched_25, AsConserving(Family::<Bands<25>>::new()), but hits);
 conformance!(matched_by_channel, AsConserving(Family::<Bands<9, true>>::new()), but hits);
-
-/// Suites of samplers that the list of models has in some builds alone. Those of `.ci/long.sh` have them.
-macro_rules! listed {
-    ($($(#[$doc:meta])* $variant:ident: $model:ty;)*) => { $(listed! { $variant })* };
-    (GaussianMatched25) => {
-        conformance!(matched_25, AsConserving(Family::<Bands<25>>::new()), but hits);
-    };
-    ($other:ident) => {};
-}
-hairis_variants::for_each_model! { listed }
 
 published!(published_sampler, crate::family::PublishedHair, published);
 published!(matched, crate::family::Bands<9>, matched);
