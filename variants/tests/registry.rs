@@ -126,8 +126,8 @@ impl Visitor for Compare {
             .map(|(_, params)| *params)
             .collect();
         let presets: [M::Params; 8] = core::array::from_fn(|i| presets[i % presets.len()]);
-        // In the types of `Conserving`, as the list has them: this package has compiled them, and the kernels' tests compare their bits
-        // with those of the raw types.
+        // In the types of `Conserving`, as the list has them and this package has compiled them. The kernels' tests compare two models with
+        // their raw types, and `.ci/hosts.sh` compares every model.
         let materials = presets
             .map(|params| -> Material<Conserving<M>> { Material::new(&M::MODEL, &params).into() });
         let any = presets.map(|params| id.material(&params.values()).expect("a preset is legal"));

@@ -66,7 +66,7 @@ impl Visitor for Print<'_> {
                 read: &read,
             };
             let [(fused, kept), (exact, also_kept)] =
-                [&fused, &exact].map(|gradient| chunks(gradient, results, &inputs, &mut slots));
+                [&fused, &exact].map(|gradient| loops(gradient, results, &inputs, &mut slots));
             let kept = kept.max(also_kept);
             let body = body(&fused, &exact);
             let place = bodies.iter().position(|known| *known == body);
@@ -150,17 +150,17 @@ fn read(functions: &[&Function], numbers: usize) -> Vec<usize> {
     read.into_iter().collect()
 }
 
-/// Prints the chunks of both graphs, each as a function that is inlined, and their calls. Compilers check one function of ten thousand
+/// Prints the loops of both graphs, each as a function that is inlined, and their calls. Compilers check one function of ten thousand
 /// operations three times as long.
 fn body(fused: &[String], exact: &[String]) -> String {
     let mut out = String::new();
-    let [fused, exact] = [("fused", fused), ("exact", exact)].map(|(name, chunks)| {
+    let [fused, exact] = [("fused", fused), ("exact", exact)].map(|(name, loops)| {
         let mut calls = String::new();
-        for (number, chunk) in chunks.iter().enumerate() {
+        for (number, text) in loops.iter().enumerate() {
             let _ = writeln!(
                 out,
                 "#[inline(always)]\nfn {name}{number}<L: Lanes<Stored = f32x8>>(c: &C, packets: &mut P, sums: &mut S, finite: &mut f32x8) \
-                 {{\n{chunk}}}"
+                 {{\n{text}}}"
             );
             let _ = writeln!(calls, "{name}{number}::<L>(c, packets, sums, finite);");
         }
@@ -173,10 +173,10 @@ fn body(fused: &[String], exact: &[String]) -> String {
     out
 }
 
-/// Returns the statements of a derivative chunk by chunk, and the count of the numbers that a packet keeps: its inputs, its outputs, and
-/// the results that a later chunk reads. Each chunk is a loop over packets, whose operations do not wait for those of another packet, so
-/// that a CPU works on two of them at once. The sums of derivatives by the material grow from packet to packet.
-fn chunks(
+/// Returns the loops of a derivative, and the count of the numbers that a packet keeps: its inputs, its outputs, and the results that a
+/// later chunk reads. Each chunk is a loop over packets, whose operations do not wait for those of another packet, so that a CPU works on
+/// two of them at once. The sums of derivatives by the material grow from packet to packet.
+fn loops(
     gradient: &Function,
     results: usize,
     inputs: &Inputs<'_>,
