@@ -18,7 +18,11 @@
 /// have for readers of the repository, and the first definition of a target counts.
 macro_rules! chapters {
     ($($chapter:ident = $file:literal;)*) => { $(
-        #[doc = "[cauchy]: crate::guide::cauchy\n[errata]: crate::guide::errata\n\n"]
+        #[doc = "[cauchy]: crate::guide::cauchy\n[errata]: crate::guide::errata\n"]
+        #[doc = "[variants]: https://docs.rs/hairis-variants"]
+        #[doc = "[fiber]: https://docs.rs/crate/hairis-variants/latest/source/examples/lambert_fiber/lambert_fiber.rs"]
+        #[doc = "[speed]: https://docs.rs/hairis-benches/latest/hairis_benches/guide/speed/"]
+        #[doc = "[hits]: https://docs.rs/hairis-benches/latest/hairis_benches/guide/hits/\n\n"]
         #[doc = include_str!($file)]
         pub mod $chapter {}
     )* };
