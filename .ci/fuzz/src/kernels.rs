@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 use hairis::columns::{EvalColumns, SampleColumns};
-use hairis::model::{DynBsdf, Model};
+use hairis::resample::{CandidateColumns, Counts, Partition, WeightColumns};
 use hairis::simd::{Level, f32x8};
-use hairis::{Eval, Hit, Lobe, LobeMask, Material, Vec3x8};
-use hairis_variants::{ModelId, Parameters, Registered, Visitor};
+use hairis::{Eval, Hit, Lobe, LobeMask, Vec3x8};
+use hairis_variants::{AnyMaterial, ModelId};
 
 /// Numbers from bytes, zeros at their end.
 struct Numbers<'a>(&'a [u8]);
@@ -47,57 +47,54 @@ impl Numbers<'_> {
 }
 
 pub fn fuzz(data: &[u8]) {
-    let mut numbers = Numbers(data);
-    let id = ModelId::ALL[usize::from(numbers.byte()) % ModelId::ALL.len()];
-    id.visit(Everything(numbers));
-}
-
-struct Everything<'a>(Numbers<'a>);
-
-impl Visitor for Everything<'_> {
-    type Output = ();
-
-    fn visit<M: Registered>(mut self) {
-        let numbers = &mut self.0;
-        // Half of the fields of a preset become any numbers: those within range are taken.
-        let presets = M::Params::PRESETS;
-        let mut params = presets[usize::from(numbers.byte()) % presets.len()].1;
-        for field in M::Params::FIELDS {
-            let kind = numbers.byte();
-            if kind > 127 {
-                continue;
-            }
-            let old = params.values();
-            let mut new = [0.0; 4];
-            let new = &mut new[..field.kind.width()];
-            for (new, old) in new.iter_mut().zip(old.numbers(field.name)) {
-                *new = if kind < 32 {
-                    numbers.any()
-                } else {
-                    old * (0.25 + 4.0 * numbers.unit())
-                };
-            }
-            params = M::Params::from_values(&old.with(field.name, new)).unwrap_or(params);
+    let numbers = &mut Numbers(data);
+    let byte = usize::from(numbers.byte());
+    let id = ModelId::ALL[byte % ModelId::ALL.len()];
+    // Half of the fields of a preset become any numbers: those within range are taken.
+    let presets: Vec<_> = id.presets().collect();
+    let mut values = presets[usize::from(numbers.byte()) % presets.len()].1;
+    for field in id.fields() {
+        let kind = numbers.byte();
+        if kind > 127 {
+            continue;
         }
-        calls(&Material::new(&M::MODEL, &params), numbers);
+        let mut new = [0.0; 4];
+        let new = &mut new[..field.kind.width()];
+        for (new, old) in new.iter_mut().zip(values.numbers(field.name)) {
+            *new = if kind < 32 {
+                numbers.any()
+            } else {
+                old * (0.25 + 4.0 * numbers.unit())
+            };
+        }
+        let changed = values.with(field.name, new);
+        if id.material(&changed).is_ok() {
+            values = changed;
+        }
+    }
+    let material = id.material(&values).expect("accepted above");
+    // Energy is conserved by the material, by the hit or by nothing.
+    match byte / ModelId::ALL.len() % 3 {
+        0 => calls(&material, false, numbers),
+        1 => calls(&material.conserving(), false, numbers),
+        _ => calls(&material, true, numbers),
     }
 }
 
-fn calls<M: Model>(material: &Material<M>, numbers: &mut Numbers<'_>) {
-    let bsdf = material.prepare(Hit::new(numbers.direction(), 2.0 * numbers.unit() - 1.0));
-    let bsdf = if numbers.byte() < 64 {
-        bsdf.with_lobes(LobeMask::of(&[Lobe::slot(numbers.byte() % 4)]))
-    } else {
-        bsdf
-    };
+fn calls(material: &AnyMaterial, conserving_hit: bool, numbers: &mut Numbers<'_>) {
+    let mut bsdf = material.prepare(Hit::new(numbers.direction(), 2.0 * numbers.unit() - 1.0));
+    if numbers.byte() < 64 {
+        bsdf.set_lobes(LobeMask::of(&[Lobe::slot(numbers.byte() % 4)]));
+    }
+    if conserving_hit {
+        bsdf.set_conserving();
+    }
     let wi: [Vec3; 8] = core::array::from_fn(|_| numbers.direction());
     let xi: [[f32; 3]; 8] =
         core::array::from_fn(|_| [numbers.unit(), numbers.unit(), numbers.unit()]);
-    // Builds with assertions refuse directions of another length in calls of one lane, and nowhere else: `DynBsdf` takes them.
-    let erased: &dyn DynBsdf = &bsdf;
     for (wi, xi) in wi.iter().zip(xi) {
-        sound_eval(erased.eval_pdf(*wi));
-        erased.lobes(*wi).0.iter().for_each(|lobe| {
+        sound_eval(bsdf.eval_pdf(*wi));
+        bsdf.lobes(*wi).0.iter().for_each(|lobe| {
             sound(&[
                 lobe.value,
                 lobe.pdf,
@@ -126,6 +123,13 @@ fn calls<M: Model>(material: &Material<M>, numbers: &mut Numbers<'_>) {
     };
     let (wi, xi) = (columns(wi.map(Vec3::into)), columns(xi));
     let len = usize::from(numbers.byte()) % 9;
+    let light: [[f32; 8]; 4] = [(); 4].map(|()| [(); 8].map(|()| numbers.any()));
+    let counts = Counts {
+        bsdf: numbers.byte().into(),
+        light: numbers.byte().into(),
+    };
+    let partition =
+        [Partition::All, Partition::Balance, Partition::Power][usize::from(numbers.byte()) % 3];
     for level in Level::available() {
         let eval = bsdf.with_level(level).eval_pdf8(&wi8);
         let samples = bsdf.with_level(level).sample8(&xi8);
@@ -185,6 +189,22 @@ fn calls<M: Model>(material: &Material<M>, numbers: &mut Numbers<'_>) {
             .zip([0, 1, 2, 6, 7, 8, 9])
             .all(|(row, n)| row.map(f32::to_bits) == rows[n].map(f32::to_bits));
         assert!(same, "{len} weights on {level}");
+        let mut weighed = [[0.0; 8]; 4];
+        let [r, g, b, weight] = weighed.each_mut().map(|row| &mut row[..len]);
+        let [red, green, blue, pdf_light] = light.each_ref().map(|row| &row[..len]);
+        let candidates = CandidateColumns {
+            wi: [&wi[0][..len], &wi[1][..len], &wi[2][..len]],
+            radiance: [red, green, blue],
+            pdf_light,
+        };
+        let out = WeightColumns {
+            contribution: [r, g, b],
+            weight,
+        };
+        bsdf.with_level(level)
+            .weigh_columns(candidates, counts, partition, out)
+            .expect("one length");
+        weighed.iter().for_each(|row| sound(row));
     }
 }
 
