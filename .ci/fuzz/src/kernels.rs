@@ -1,4 +1,6 @@
 //! Every entry point on numbers of any bits: nothing but NaN directions may be anything but finite and at least 0.
+//!
+//! Models are those of the list, whose handles have the bits of the raw types: `.ci/hosts.sh` compares them.
 
 use glam::Vec3;
 use hairis::columns::{EvalColumns, SampleColumns};
@@ -53,6 +55,7 @@ pub fn fuzz(data: &[u8]) {
     // Half of the fields of a preset become any numbers: those within range are taken.
     let presets: Vec<_> = id.presets().collect();
     let mut values = presets[usize::from(numbers.byte()) % presets.len()].1;
+    let mut material = id.material(&values).expect("a preset is legal");
     for field in id.fields() {
         let kind = numbers.byte();
         if kind > 127 {
@@ -68,11 +71,10 @@ pub fn fuzz(data: &[u8]) {
             };
         }
         let changed = values.with(field.name, new);
-        if id.material(&changed).is_ok() {
-            values = changed;
+        if let Ok(legal) = id.material(&changed) {
+            (values, material) = (changed, legal);
         }
     }
-    let material = id.material(&values).expect("accepted above");
     // Energy is conserved by the material, by the hit or by nothing.
     match byte / ModelId::ALL.len() % 3 {
         0 => calls(&material, false, numbers),
@@ -123,7 +125,14 @@ fn calls(material: &AnyMaterial, conserving_hit: bool, numbers: &mut Numbers<'_>
     };
     let (wi, xi) = (columns(wi.map(Vec3::into)), columns(xi));
     let len = usize::from(numbers.byte()) % 9;
+    let [wi, xi] = [&wi, &xi].map(|rows| rows.each_ref().map(|row| &row[..len]));
     let light: [[f32; 8]; 4] = [(); 4].map(|()| [(); 8].map(|()| numbers.any()));
+    let [r, g, b, pdf_light] = light.each_ref().map(|row| &row[..len]);
+    let candidates = CandidateColumns {
+        wi,
+        radiance: [r, g, b],
+        pdf_light,
+    };
     let counts = Counts {
         bsdf: numbers.byte().into(),
         light: numbers.byte().into(),
@@ -149,7 +158,7 @@ fn calls(material: &AnyMaterial, conserving_hit: bool, numbers: &mut Numbers<'_>
             pdf: Some(&mut pdf[..len]),
         };
         bsdf.with_level(level)
-            .eval_columns([&wi[0][..len], &wi[1][..len], &wi[2][..len]], out)
+            .eval_columns(wi, out)
             .expect("one length");
         for i in 0..len {
             let Eval {
@@ -170,7 +179,7 @@ fn calls(material: &AnyMaterial, conserving_hit: bool, numbers: &mut Numbers<'_>
             slot: Some(slot),
         };
         bsdf.with_level(level)
-            .sample_columns([&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
+            .sample_columns(xi, out)
             .expect("one length");
         rows[3..10].iter().for_each(|row| sound(row));
         let mut weights = [[0.0; 8]; 7];
@@ -182,21 +191,15 @@ fn calls(material: &AnyMaterial, conserving_hit: bool, numbers: &mut Numbers<'_>
             ..SampleColumns::default()
         };
         bsdf.with_level(level)
-            .sample_columns([&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
+            .sample_columns(xi, out)
             .expect("one length");
         let same = weights
             .iter()
             .zip([0, 1, 2, 6, 7, 8, 9])
-            .all(|(row, n)| row.map(f32::to_bits) == rows[n].map(f32::to_bits));
+            .all(|(row, n)| row.map(bits) == rows[n].map(bits));
         assert!(same, "{len} weights on {level}");
         let mut weighed = [[0.0; 8]; 4];
         let [r, g, b, weight] = weighed.each_mut().map(|row| &mut row[..len]);
-        let [red, green, blue, pdf_light] = light.each_ref().map(|row| &row[..len]);
-        let candidates = CandidateColumns {
-            wi: [&wi[0][..len], &wi[1][..len], &wi[2][..len]],
-            radiance: [red, green, blue],
-            pdf_light,
-        };
         let out = WeightColumns {
             contribution: [r, g, b],
             weight,
@@ -206,6 +209,12 @@ fn calls(material: &AnyMaterial, conserving_hit: bool, numbers: &mut Numbers<'_>
             .expect("one length");
         weighed.iter().for_each(|row| sound(row));
     }
+}
+
+/// Bits of a number, those of one NaN for all: the direction of a discarded sample is NaN where that to the viewer is, and Rust leaves open
+/// which NaN an operation returns.
+fn bits(x: f32) -> u32 {
+    if x.is_nan() { f32::NAN } else { x }.to_bits()
 }
 
 fn sound_eval(Eval { value, pdf }: Eval) {
