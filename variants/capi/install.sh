@@ -1,7 +1,7 @@
 #!/bin/bash
 # Builds the C library, and installs it with its headers, pkg-config file and CMake package: install.sh PREFIX [FEATURES]. FEATURES
 # are those of Cargo.toml, separated by commas: "raw-hits", which is the default, for raw hits in less time; "every-sampler" for samplers
-# that few programs need, at twice the size; "std" for a message where a panic ends the program. DESTDIR is put before PREFIX, as
+# that few programs need, for two thirds more size; "std" for a message where a panic ends the program. DESTDIR is put before PREFIX, as
 # packagers expect. Needs cargo and a C compiler.
 set -euo pipefail
 [ $# -ge 1 ] && [ $# -le 2 ] || { echo "usage: install.sh PREFIX [FEATURES]" >&2; exit 2; }

@@ -2,7 +2,7 @@
 //!
 //! To add a model, implement [`Registered`] beside its [`Model`] and [`Parameters`] for its parameters, and add a line to
 //! [`for_each_model!`] below. Run-time handles, the harness and the benches then include the model. Models that few programs need are
-//! lines of [`with_every_sampler!`], which only the feature `every-sampler` adds because they double the code.
+//! lines of [`with_every_sampler!`], which only the feature `every-sampler` adds because they double the time to compile.
 
 #[cfg(feature = "any")]
 mod any;
