@@ -25,7 +25,7 @@
 //! }
 //!
 //! hairis_conformance::conformance!(gaussian, GaussianHair);
-//! # hairis_conformance::not_numbers::inputs_that_are_no_numbers_are_black(&GaussianHair).unwrap();
+//! # hairis_conformance::bounds::eval_is_reciprocal(&GaussianHair).unwrap();
 //! ```
 //!
 //! The macro declares the module `gaussian` with a `#[test]` for each property:
