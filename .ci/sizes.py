@@ -11,11 +11,8 @@ import sys
 
 ROWS = {
     "ValuePdf": "eval_columns",
-    "Value": "eval_columns-value",
     "Pdf": "eval_columns-pdf",
     "Samples": "sample_columns",
-    "Weights": "sample_columns-weight",
-    "SomeSamples": "sample_columns-some",
     "Proposed": "propose_columns",
 }
 PACKETS = {

@@ -7,7 +7,7 @@ pub use crate::handle::{HitsError, MaterialTable};
 pub use frames::FrameColumns;
 pub use groups::in_groups;
 
-use crate::simd::columns::Columns;
+use crate::simd::columns::{Columns, Naming};
 use core::fmt;
 
 /// Error of a call whose slices differ in length: the slice at fault, its length, and the length of the first slice.
@@ -119,6 +119,23 @@ impl<'a> EvalColumns<'a> {
         let [r, g, b] = three(self.value);
         present(expected, names, [r, g, b, self.pdf])
     }
+
+    /// Returns the columns of a call on these directions, or `None` if they differ in length.
+    #[inline(always)]
+    pub(crate) fn of<'b>(&'b mut self, wi: &[&'b [f32]; 3]) -> Option<Columns<'b, 3, 4>> {
+        Naming::new(wi)
+            .output(0, again3(&mut self.value))
+            .output(3, again(&mut self.pdf))
+            .all()
+    }
+
+    /// Returns the error about the first column of such a call that differs from the others in length.
+    #[cold]
+    pub(crate) fn check(self, wi: [&[f32]; 3]) -> Result<(), LengthError> {
+        let len = wi[0].len();
+        check_lengths3(len, WI, wi)?;
+        self.columns(len, VALUE_PDF).map(drop)
+    }
 }
 
 impl<'a> SampleColumns<'a> {
@@ -133,6 +150,40 @@ impl<'a> SampleColumns<'a> {
         let all = [u, v, w, r, g, b, self.pdf, wr, wg, wb, self.slot];
         present(expected, names, all)
     }
+
+    /// Returns the columns of a call on these uniform numbers, or `None` if they differ in length.
+    #[inline(always)]
+    pub(crate) fn of<'b>(&'b mut self, xi: &[&'b [f32]; 3]) -> Option<Columns<'b, 3, 11>> {
+        Naming::new(xi)
+            .output(0, again3(&mut self.wi))
+            .output(3, again3(&mut self.value))
+            .output(6, again(&mut self.pdf))
+            .output(7, again3(&mut self.weight))
+            .output(10, again(&mut self.slot))
+            .all()
+    }
+
+    /// Returns the error about the first column of such a call that differs from the others in length.
+    #[cold]
+    pub(crate) fn check(self, xi: [&[f32]; 3]) -> Result<(), LengthError> {
+        let len = xi[0].len();
+        check_lengths3(len, XI, xi)?;
+        self.columns(len, SAMPLE).map(drop)
+    }
+}
+
+/// Borrows columns once more.
+#[inline(always)]
+fn again3<'a>(columns: &'a mut Option<[&mut [f32]; 3]>) -> Option<[&'a mut [f32]; 3]> {
+    columns
+        .as_mut()
+        .map(|[x, y, z]| [&mut **x, &mut **y, &mut **z])
+}
+
+/// Borrows a column once more.
+#[inline(always)]
+fn again<'a>(column: &'a mut Option<&mut [f32]>) -> Option<[&'a mut [f32]; 1]> {
+    column.as_mut().map(|x| [&mut **x])
 }
 
 /// Names of the columns of a direction.
@@ -160,11 +211,6 @@ pub(crate) const SAMPLE_OF_BOTH: [&str; 11] = [
     "sample.weight.g",
     "sample.weight.b",
     "sample.slot",
-];
-
-/// Names of the columns of a sample that a path tracer needs.
-pub(crate) const SAMPLE_WEIGHT: [&str; 7] = [
-    SAMPLE[0], SAMPLE[1], SAMPLE[2], SAMPLE[6], SAMPLE[7], SAMPLE[8], SAMPLE[9],
 ];
 
 #[inline(always)]
@@ -229,8 +275,8 @@ pub(crate) fn check_columns<'a, const I: usize, const N: usize>(
         inputs.map(<[f32]>::len),
         outputs.each_ref().map(|column| column.len()),
     );
-    Columns::all(inputs, outputs)
-        .ok_or_else(|| first_that_differs(in_names, lens.0, out_names, lens.1))
+    let columns = Naming::new(&inputs).output(0, Some(outputs)).all();
+    columns.ok_or_else(|| first_that_differs(in_names, lens.0, out_names, lens.1))
 }
 
 /// Returns the error about the first of the slices that is not as long as the first input.

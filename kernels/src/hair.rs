@@ -60,6 +60,7 @@ impl<B: Bell> Model for Published<B> {
     type Material<C: Scalar> = PublishedMaterial<C>;
     type Prepared<C: Scalar> = PublishedPrepared<C>;
     type Fit<C: Scalar> = AlbedoFit<C>;
+    type Inner = Self;
 
     const LOBES: &'static [&'static str] = &["r", "tt", "trt", "glint"];
     const CONSERVES: bool = false;

@@ -56,6 +56,14 @@ pub trait Model: Copy {
     /// Constants that [`Conserving`] adds to those of a material: `[C; 0]` for none.
     type Fit<C: Scalar>: LaneStruct<Number = C, One = Self::Fit<f32>, Eight = Self::Fit<f32x8>>;
 
+    /// Model whose calls at a shading point serve this one: `Self`, or the model that this one prepares otherwise, as [`Conserving`]
+    /// does. Its `eval`, `lobes`, `sample`, `albedo` and `conserving` must have the same results, and are compiled once for both.
+    type Inner: Model<
+            Inner = Self::Inner,
+            Prepared<f32> = Self::Prepared<f32>,
+            Prepared<f32x8> = Self::Prepared<f32x8>,
+        >;
+
     /// Names of the lobes in slot order, at most [`Lobe::COUNT`] of them.
     const LOBES: &'static [&'static str];
     /// True if the parameters alone limit how much light returns, as albedos or absorption do, so that [`Conserving`] and

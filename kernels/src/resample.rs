@@ -26,18 +26,21 @@
 //!   1e30, so that no sum overflows.
 
 use crate::columns::{LengthError, VALUE_PDF, WI, XI, check_columns};
-use crate::handle::kernels::{Proposals, ProposalsOf, WeighOf, Weighs};
+use crate::handle::kernels::{AtBsdf, ProposalsOf, Proposed, WeighOf, Weighs};
 use crate::model::Model;
+use crate::simd::columns::Columns;
 use crate::simd::dispatch::clean_upper_halves;
 use crate::simd::{Lanes, Level, Row, Vec3x};
 use crate::{Bsdf, Bsdf8, Eval8, Vec3x8};
 use wide::f32x8;
 
 mod choice;
+mod dynamic;
 mod pool;
 mod reservoir;
 
 pub use choice::{Choice, Choices, choose};
+pub use dynamic::Resample;
 pub use pool::Pool;
 pub use reservoir::Reservoir8;
 
@@ -303,6 +306,18 @@ pub fn weigh_evals(
     Ok(())
 }
 
+/// Returns the columns of a call that weighs candidates, all of one length.
+#[inline(always)]
+fn candidate_columns<'a>(
+    candidates: CandidateColumns<'a>,
+    out: WeightColumns<'a>,
+) -> Result<Columns<'a, 7, 4>, LengthError> {
+    let ([u, v, w], [r, g, b]) = (candidates.wi, candidates.radiance);
+    let inputs = [u, v, w, r, g, b, candidates.pdf_light];
+    let [fr, fg, fb] = out.contribution;
+    check_columns(&CANDIDATE, inputs, &WEIGHT, [fr, fg, fb, out.weight])
+}
+
 impl<M: Model> Bsdf<M> {
     /// Draws the BSDF's candidates, like [`sample_columns`](Self::sample_columns) but directions alone. A discarded sample gives the
     /// direction 0, whose weight is 0.
@@ -314,7 +329,7 @@ impl<M: Model> Bsdf<M> {
     pub fn propose_columns(&self, xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError> {
         clean_upper_halves();
         let columns = check_columns(&XI, xi, &WI, wi)?;
-        let row = Proposals::<M>::new(&self.prepared);
+        let row = AtBsdf::<M::Inner, Proposed>::new(&self.prepared);
         self.level.run_columns(row, &columns);
         Ok(())
     }
@@ -333,15 +348,8 @@ impl<M: Model> Bsdf<M> {
         out: WeightColumns<'_>,
     ) -> Result<(), LengthError> {
         clean_upper_halves();
-        let CandidateColumns {
-            wi,
-            radiance,
-            pdf_light,
-        } = candidates;
-        let ([u, v, w], [r, g, b], [fr, fg, fb]) = (wi, radiance, out.contribution);
-        let inputs = [u, v, w, r, g, b, pdf_light];
-        let columns = check_columns(&CANDIDATE, inputs, &WEIGHT, [fr, fg, fb, out.weight])?;
-        let row = Weighs::<M>::new(&self.prepared, Weighing::new(counts, partition));
+        let columns = candidate_columns(candidates, out)?;
+        let row = Weighs::<M::Inner>::new(&self.prepared, Weighing::new(counts, partition));
         self.level.run_columns(row, &columns);
         Ok(())
     }
@@ -352,7 +360,7 @@ impl<M: Model> Bsdf8<M> {
     #[inline]
     #[must_use]
     pub fn propose8(&self, xi: &[f32x8; 3]) -> Vec3x8 {
-        self.level.run(ProposalsOf::<M> {
+        self.level.run(ProposalsOf::<M::Inner> {
             prepared: &self.prepared,
             xi,
         })
@@ -369,7 +377,7 @@ impl<M: Model> Bsdf8<M> {
         counts: Counts,
         partition: Partition,
     ) -> Weighed8 {
-        self.level.run(WeighOf::<M> {
+        self.level.run(WeighOf::<M::Inner> {
             prepared: &self.prepared,
             wi,
             radiance,

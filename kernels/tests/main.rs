@@ -9,6 +9,7 @@ mod frames;
 mod hits;
 mod math;
 mod params;
+mod resample;
 mod rows;
 mod tolerance;
 mod vector;

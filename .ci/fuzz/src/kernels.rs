@@ -4,7 +4,8 @@
 
 use glam::Vec3;
 use hairis::columns::{EvalColumns, SampleColumns};
-use hairis::resample::{CandidateColumns, Counts, Partition, WeightColumns};
+use hairis::model::DynBsdf;
+use hairis::resample::{CandidateColumns, Counts, Partition, Resample, WeightColumns};
 use hairis::simd::{Level, f32x8};
 use hairis::{Eval, Hit, Lobe, LobeMask, Vec3x8};
 use hairis_variants::{AnyMaterial, ModelId};
@@ -204,7 +205,9 @@ fn calls(material: &AnyMaterial, conserving_hit: bool, numbers: &mut Numbers<'_>
             contribution: [r, g, b],
             weight,
         };
-        bsdf.with_level(level)
+        let at_level = bsdf.with_level(level);
+        let object: &dyn DynBsdf = &*at_level;
+        object
             .weigh_columns(candidates, counts, partition, out)
             .expect("one length");
         weighed.iter().for_each(|row| sound(row));

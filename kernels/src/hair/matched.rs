@@ -113,6 +113,7 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
     type Material<C: Scalar> = MatchedMaterial<C>;
     type Prepared<C: Scalar> = MatchedPrepared<C, BANDS>;
     type Fit<C: Scalar> = AlbedoFit<C>;
+    type Inner = Self;
 
     const LOBES: &'static [&'static str] = &["r", "tt", "trt", "glint"];
     const CONSERVES: bool = false;

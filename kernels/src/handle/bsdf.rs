@@ -74,7 +74,7 @@ impl<M: Model> Bsdf<M> {
     #[inline]
     #[must_use]
     pub fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
-        self.level.run(EvalPdf::<M, f32> {
+        self.level.run(EvalPdf::<M::Inner, f32> {
             prepared: &self.prepared,
             wi,
         })
@@ -84,7 +84,7 @@ impl<M: Model> Bsdf<M> {
     #[inline]
     #[must_use]
     pub fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
-        self.level.run(Lobes::<M, f32> {
+        self.level.run(Lobes::<M::Inner, f32> {
             prepared: &self.prepared,
             wi,
         })
@@ -94,7 +94,7 @@ impl<M: Model> Bsdf<M> {
     #[inline]
     #[must_use]
     pub fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
-        self.level.run(SampleWi::<M, f32> {
+        self.level.run(SampleWi::<M::Inner, f32> {
             prepared: &self.prepared,
             xi,
         })
@@ -136,7 +136,7 @@ impl<M: Model> Bsdf8<M> {
     #[inline]
     #[must_use]
     pub fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
-        self.level.run(EvalPdf::<M, f32x8> {
+        self.level.run(EvalPdf::<M::Inner, f32x8> {
             prepared: &self.prepared,
             wi,
         })
@@ -146,7 +146,7 @@ impl<M: Model> Bsdf8<M> {
     #[inline]
     #[must_use]
     pub fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
-        self.level.run(Lobes::<M, f32x8> {
+        self.level.run(Lobes::<M::Inner, f32x8> {
             prepared: &self.prepared,
             wi,
         })
@@ -156,7 +156,7 @@ impl<M: Model> Bsdf8<M> {
     #[inline]
     #[must_use]
     pub fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
-        self.level.run(SampleWi::<M, f32x8> {
+        self.level.run(SampleWi::<M::Inner, f32x8> {
             prepared: &self.prepared,
             xi,
         })
@@ -190,7 +190,7 @@ impl<M: Model> Bsdf8<M> {
     #[inline]
     #[must_use]
     pub fn albedo8(&self) -> PerLobe<[f32x8; 3]> {
-        self.level.run(Albedo::<M> {
+        self.level.run(Albedo::<M::Inner> {
             prepared: &self.prepared,
         })
     }

@@ -5,13 +5,11 @@
 //! between the columns to avoid the wait.
 
 use super::Bsdf;
-use super::kernels::{AtBsdf, Pdf, Samples, SomeSamples, Value, ValuePdf, Weights};
+use super::kernels::{AtBsdf, Pdf, Samples, ValuePdf};
 use crate::columns::{
-    EvalColumns, LengthError, SAMPLE, SAMPLE_WEIGHT, SampleColumns, VALUE_PDF, WI, XI,
-    check_columns, check_lengths3,
+    EvalColumns, LengthError, SampleColumns, VALUE_PDF, WI, check_columns, check_lengths3,
 };
 use crate::model::Model;
-use crate::simd::Row;
 use crate::simd::dispatch::clean_upper_halves;
 
 impl<M: Model> Bsdf<M> {
@@ -38,19 +36,33 @@ impl<M: Model> Bsdf<M> {
     /// ```
     #[inline]
     pub fn eval_columns(&self, wi: [&[f32]; 3], out: EvalColumns<'_>) -> Result<(), LengthError> {
-        let [value @ .., pdf] = &VALUE_PDF;
-        match (out.value, out.pdf) {
-            (Some([r, g, b]), Some(pdf)) => {
-                self.run::<ValuePdf, 4>(&WI, wi, &VALUE_PDF, [r, g, b, pdf])
+        clean_upper_halves();
+        match out {
+            // A kernel of its own, because half of the terms are those of the value.
+            EvalColumns {
+                value: None,
+                pdf: Some(pdf),
+            } => {
+                let columns = check_columns(&WI, wi, &[VALUE_PDF[3]], [pdf])?;
+                let row = AtBsdf::<M::Inner, Pdf>::new(&self.prepared);
+                self.level.run_columns(row, &columns);
             }
-            (Some(out), None) => self.run::<Value, 3>(&WI, wi, value, out),
-            (None, Some(out)) => self.run::<Pdf, 1>(&WI, wi, &[*pdf], [out]),
-            (None, None) => check_lengths3(wi[0].len(), WI, wi),
+            EvalColumns {
+                value: None,
+                pdf: None,
+            } => check_lengths3(wi[0].len(), WI, wi)?,
+            mut out => {
+                let Some(columns) = out.of(&wi) else {
+                    return out.check(wi);
+                };
+                let row = AtBsdf::<M::Inner, ValuePdf>::new(&self.prepared);
+                self.level.run_columns(row, &columns);
+            }
         }
+        Ok(())
     }
 
-    /// Draws many samples; `xi` holds uniform numbers in `[0, 1)` for the lobe, the inclination and the azimuth. Samples without
-    /// value and slot take less time, with the same bits.
+    /// Draws many samples; `xi` holds uniform numbers in `[0, 1)` for the lobe, the inclination and the azimuth.
     ///
     /// # Errors
     ///
@@ -59,54 +71,13 @@ impl<M: Model> Bsdf<M> {
     pub fn sample_columns(
         &self,
         xi: [&[f32]; 3],
-        out: SampleColumns<'_>,
+        mut out: SampleColumns<'_>,
     ) -> Result<(), LengthError> {
-        match out {
-            SampleColumns {
-                wi: Some([u, v, w]),
-                value: Some([r, g, b]),
-                pdf: Some(pdf),
-                weight: Some([wr, wg, wb]),
-                slot: Some(slot),
-            } => {
-                let out = [u, v, w, r, g, b, pdf, wr, wg, wb, slot];
-                self.run::<Samples, 11>(&XI, xi, &SAMPLE, out)
-            }
-            SampleColumns {
-                wi: Some([u, v, w]),
-                value: None,
-                pdf: Some(pdf),
-                weight: Some([wr, wg, wb]),
-                slot: None,
-            } => {
-                let out = [u, v, w, pdf, wr, wg, wb];
-                self.run::<Weights, 7>(&XI, xi, &SAMPLE_WEIGHT, out)
-            }
-            out => {
-                check_lengths3(xi[0].len(), XI, xi)?;
-                let mut out = out.columns(xi[0].len(), SAMPLE)?;
-                clean_upper_halves();
-                let row = AtBsdf::<M, SomeSamples>::new(&self.prepared);
-                self.level.run_rows(row, xi, &mut out);
-                Ok(())
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn run<'a, K, const N: usize>(
-        &self,
-        in_names: &[&'static str; 3],
-        inputs: [&'a [f32]; 3],
-        out_names: &[&'static str; N],
-        outputs: [&'a mut [f32]; N],
-    ) -> Result<(), LengthError>
-    where
-        for<'b> AtBsdf<'b, M, K>: Row<3, N>,
-    {
         clean_upper_halves();
-        let columns = check_columns(in_names, inputs, out_names, outputs)?;
-        let row = AtBsdf::<M, K>::new(&self.prepared);
+        let Some(columns) = out.of(&xi) else {
+            return out.check(xi);
+        };
+        let row = AtBsdf::<M::Inner, Samples>::new(&self.prepared);
         self.level.run_columns(row, &columns);
         Ok(())
     }

@@ -1,12 +1,12 @@
 //! Handles of a model that is chosen at run time: object-safe traits, which the handle of every model implements.
 //!
-//! Each call is compiled once per model, and dispatch costs one jump. Scalar calls take a `Vec3`, because a `Vec3x` by value would
+//! Each call is compiled once per model, and dispatch costs one jump. Calls of resampling are not among them, because they follow from
+//! those that are: see [`Resample`](crate::resample::Resample). Scalar calls take a `Vec3`, because a `Vec3x` by value would
 //! cost 8 to 15 ns.
 
 use super::{Bsdf, Bsdf8};
 use crate::columns::{EvalColumns, LengthError, SampleColumns};
 use crate::model::{LobeEval, LobeEval8, Model};
-use crate::resample::{CandidateColumns, Counts, Partition, Weighed8, WeightColumns};
 use crate::simd::{Level, Vec3x, f32x8};
 use crate::{Eval, Eval8, LobeMask, PerLobe, Sample, Sample8, Vec3x8};
 use core::fmt::Debug;
@@ -68,26 +68,6 @@ pub trait DynBsdf: Debug + Send + Sync {
     /// Returns an error, and writes nothing, if the columns differ in length.
     fn sample_columns(&self, xi: [&[f32]; 3], out: SampleColumns<'_>) -> Result<(), LengthError>;
 
-    /// Draws candidates for resampling: see [`Bsdf::propose_columns`].
-    ///
-    /// # Errors
-    ///
-    /// Returns an error, and writes nothing, if the columns differ in length.
-    fn propose_columns(&self, xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError>;
-
-    /// Weighs candidates for resampling: see [`Bsdf::weigh_columns`].
-    ///
-    /// # Errors
-    ///
-    /// Returns an error, and writes nothing, if the columns differ in length.
-    fn weigh_columns(
-        &self,
-        candidates: CandidateColumns<'_>,
-        counts: Counts,
-        partition: Partition,
-        out: WeightColumns<'_>,
-    ) -> Result<(), LengthError>;
-
     /// Returns the directional albedo of each lobe: see [`Bsdf::albedo`].
     fn albedo(&self) -> PerLobe<[f32; 3]>;
 
@@ -96,6 +76,9 @@ pub trait DynBsdf: Debug + Send + Sync {
 
     /// Scales the BSDF so that it returns no more light than arrives: see [`Bsdf::conserving`].
     fn set_conserving(&mut self);
+
+    /// Returns the instruction set of calls of eight lanes and on columns: see [`Bsdf::level`].
+    fn level(&self) -> Level;
 
     /// Selects another instruction set: see [`Bsdf::with_level`].
     fn set_level(&mut self, level: Level);
@@ -111,19 +94,6 @@ pub trait DynBsdf8: Debug + Send + Sync {
 
     /// Draws one direction for each hit: see [`Bsdf8::sample8`].
     fn sample8(&self, xi: &[f32x8; 3]) -> Sample8;
-
-    /// Draws one candidate for each hit: see [`Bsdf8::propose8`].
-    fn propose8(&self, xi: &[f32x8; 3]) -> Vec3x8;
-
-    /// Weighs one candidate for each hit: see [`Bsdf8::weigh8`].
-    fn weigh8(
-        &self,
-        wi: &Vec3x8,
-        radiance: &[f32x8; 3],
-        pdf_light: &f32x8,
-        counts: Counts,
-        partition: Partition,
-    ) -> Weighed8;
 
     /// Returns the directional albedos of the eight hits: see [`Bsdf8::albedo8`].
     fn albedo8(&self) -> PerLobe<[f32x8; 3]>;
@@ -178,14 +148,8 @@ impl<M: Model> DynBsdf for Bsdf<M> {
         sample8(xi: &[f32x8; 3]) -> Sample8;
         eval_columns(wi: [&[f32]; 3], out: EvalColumns<'_>) -> Result<(), LengthError>;
         sample_columns(xi: [&[f32]; 3], out: SampleColumns<'_>) -> Result<(), LengthError>;
-        propose_columns(xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError>;
-        weigh_columns(
-            candidates: CandidateColumns<'_>,
-            counts: Counts,
-            partition: Partition,
-            out: WeightColumns<'_>
-        ) -> Result<(), LengthError>;
         albedo() -> PerLobe<[f32; 3]>;
+        level() -> Level;
     }
     set! {
         set_lobes(lobes: LobeMask) = with_lobes;
@@ -199,14 +163,6 @@ impl<M: Model> DynBsdf8 for Bsdf8<M> {
         eval_pdf8(wi: &Vec3x8) -> Eval8;
         lobes8(wi: &Vec3x8) -> PerLobe<LobeEval8>;
         sample8(xi: &[f32x8; 3]) -> Sample8;
-        propose8(xi: &[f32x8; 3]) -> Vec3x8;
-        weigh8(
-            wi: &Vec3x8,
-            radiance: &[f32x8; 3],
-            pdf_light: &f32x8,
-            counts: Counts,
-            partition: Partition
-        ) -> Weighed8;
         albedo8() -> PerLobe<[f32x8; 3]>;
     }
     set! {

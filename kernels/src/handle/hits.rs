@@ -194,7 +194,7 @@ impl<M: Model> Material<M> {
     ) {
         clean_upper_halves();
         if self.is_integrating() {
-            return in_packets::<M, K, I, N>(inputs, &mut outputs, |hits| self.prepare8(hits));
+            return in_packets::<M, K, I, N>(inputs, &mut outputs, &|hits| self.prepare8(hits));
         }
         let row = AtHits::<M, K>::new(&self.constants);
         self.level.run_rows(row, inputs, &mut outputs);
@@ -208,7 +208,7 @@ impl<M: Model> Material<M> {
 fn in_packets<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize>(
     inputs: [&[f32]; I],
     outputs: &mut [&mut [f32]; N],
-    prepare: impl Fn(&Hit8) -> Bsdf8<M>,
+    prepare: &dyn Fn(&Hit8) -> Bsdf8<M>,
 ) {
     for first in (0..inputs[0].len()).step_by(8) {
         let input = inputs.map(|column| packet(column.get(first..).unwrap_or_default()));
@@ -341,7 +341,7 @@ impl<M: Model> MaterialTable<'_, M> {
             let material = Material8::pack(lanes).with_level(level);
             let mut outputs = outputs;
             if material.integrating().is_some() {
-                in_packets::<M, K, I, N>(inputs, &mut outputs, |hits| material.prepare8(hits));
+                in_packets::<M, K, I, N>(inputs, &mut outputs, &|hits| material.prepare8(hits));
             } else {
                 let input = inputs.map(packet);
                 let row = EightHits::<M, K, I, N>::new(&material.constants, &input);

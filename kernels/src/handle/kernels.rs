@@ -124,15 +124,6 @@ impl<M: Model, K> Clone for AtBsdf<'_, M, K> {
 }
 impl<M: Model, K> Copy for AtBsdf<'_, M, K> {}
 
-/// Columns of S. Terms that only the density needs are not computed.
-pub(crate) struct Value;
-impl<M: Model> Row<3, 3> for AtBsdf<'_, M, Value> {
-    #[inline(always)]
-    fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 3] {
-        M::eval::<L, f32>(self.prepared, Vec3x::new(x, y, z)).value
-    }
-}
-
 /// Column of the density alone.
 pub(crate) struct Pdf;
 impl<M: Model> Row<3, 1> for AtBsdf<'_, M, Pdf> {
@@ -142,43 +133,27 @@ impl<M: Model> Row<3, 1> for AtBsdf<'_, M, Pdf> {
     }
 }
 
-/// Columns of S and of the density.
+/// Columns of S and of the density, some of which may be left out.
 pub(crate) struct ValuePdf;
 impl<M: Model> Row<3, 4> for AtBsdf<'_, M, ValuePdf> {
+    const OPTIONAL: bool = true;
+    const OPTIONAL_INPUTS: bool = false;
+
     #[inline(always)]
     fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 4] {
         value_pdf(M::eval::<L, f32>(self.prepared, Vec3x::new(x, y, z)))
     }
 }
 
-/// Columns of samples.
+/// Columns of samples, some of which may be left out.
 pub(crate) struct Samples;
 impl<M: Model> Row<3, 11> for AtBsdf<'_, M, Samples> {
-    #[inline(always)]
-    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 11] {
-        columns(M::sample::<L, f32>(self.prepared, xi))
-    }
-}
-
-/// Columns of samples, some of which are left out.
-pub(crate) struct SomeSamples;
-impl<M: Model> Row<3, 11> for AtBsdf<'_, M, SomeSamples> {
     const OPTIONAL: bool = true;
+    const OPTIONAL_INPUTS: bool = false;
 
     #[inline(always)]
     fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 11] {
         columns(M::sample::<L, f32>(self.prepared, xi))
-    }
-}
-
-/// Columns of samples without value and slot, which a path tracer does not need.
-pub(crate) struct Weights;
-impl<M: Model> Row<3, 7> for AtBsdf<'_, M, Weights> {
-    #[inline(always)]
-    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 7] {
-        let s = M::sample::<L, f32>(self.prepared, xi);
-        let [r, g, b] = s.weight;
-        [s.wi.x, s.wi.y, s.wi.z, s.pdf, r, g, b]
     }
 }
 
@@ -370,9 +345,8 @@ impl<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize> Kernel
 }
 
 /// Columns of the BSDF's candidates: the directions of samples, 0 where a sample was discarded.
-pub(crate) type Proposals<'a, M> = AtBsdf<'a, M, Proposed>;
 pub(crate) struct Proposed;
-impl<M: Model> Row<3, 3> for Proposals<'_, M> {
+impl<M: Model> Row<3, 3> for AtBsdf<'_, M, Proposed> {
     #[inline(always)]
     fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 3] {
         proposed(M::sample::<L, f32>(self.prepared, xi))

@@ -244,16 +244,21 @@ impl<M: Model> Material8<M> {
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
-        let (material, level) = (&self.constants, self.level);
-        let kernel = Prepare::<M, f32x8, _> { material, hits };
         if M::INTEGRATES {
             // What follows compares floats outside the level.
             clean_upper_halves();
         }
         if let Some(lanes) = self.integrating() {
-            let prepared = level.run(kernel);
-            return Bsdf8 { prepared, level }.conserving_where(lanes);
+            return self.prepare8_at(hits).conserving_where(lanes);
         }
+        self.prepare8_at(hits)
+    }
+
+    /// Not inlined, as for one material.
+    #[inline(never)]
+    fn prepare8_at(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
+        let (material, level) = (&self.constants, self.level);
+        let kernel = Prepare::<M, f32x8, _> { material, hits };
         level.run_into(kernel, |prepared| Bsdf8 { prepared, level })
     }
 

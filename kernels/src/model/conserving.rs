@@ -30,10 +30,11 @@ impl<M: Model> Bsdf8<M> {
     }
 
     /// Conserves energy in the lanes whose number is above 0.
-    #[inline]
+    #[cold]
+    #[inline(never)]
     pub(crate) fn conserving_where(&self, lanes: f32x8) -> Self {
         let level = self.level;
-        let kernel = Integrate::<M> {
+        let kernel = Integrate::<M::Inner> {
             prepared: &self.prepared,
             lanes,
         };
@@ -181,6 +182,7 @@ impl<M: Model> Model for Conserving<M> {
     type Material<C: Scalar> = ConservingMaterial<M::Material<C>, M::Fit<C>>;
     type Prepared<C: Scalar> = M::Prepared<C>;
     type Fit<C: Scalar> = [C; 0];
+    type Inner = M::Inner;
 
     const LOBES: &'static [&'static str] = M::LOBES;
     const CONSERVES: bool = true;

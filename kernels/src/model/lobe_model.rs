@@ -231,6 +231,7 @@ impl<M: LobeModel> Model for M {
     type Material<C: Scalar> = M::Material<C>;
     type Prepared<C: Scalar> = Mixed<M::Prepared<C>, C>;
     type Fit<C: Scalar> = [C; 0];
+    type Inner = Self;
 
     const CONSERVES: bool = M::CONSERVES;
     const LOBES: &'static [&'static str] = {

@@ -1,8 +1,9 @@
 //! Candidates of one hit, stored by column.
 
-use super::{CandidateColumns, Choice, Choices, Counts, Partition, WeightColumns, choose};
+use super::{
+    CandidateColumns, Choice, Choices, Counts, Partition, Resample, WeightColumns, choose,
+};
 use crate::columns::LengthError;
-use crate::model::DynBsdf;
 use glam::Vec3;
 
 /// Candidates of one hit, at most `N`, with those of the BSDF first. Keep one pool per thread and use it again.
@@ -93,7 +94,7 @@ impl<const N: usize> Pool<N> {
     #[inline]
     pub fn propose(
         &mut self,
-        bsdf: &(impl DynBsdf + ?Sized),
+        bsdf: &(impl Resample + ?Sized),
         xi: [&[f32]; 3],
     ) -> Result<(), LengthError> {
         bsdf.propose_columns(xi, self.bsdf_candidates().wi).map_err(
@@ -179,7 +180,7 @@ impl<const N: usize> Pool<N> {
 
     /// Weighs all candidates. Call it once their radiance and densities have been written.
     #[inline]
-    pub fn weigh(&mut self, bsdf: &(impl DynBsdf + ?Sized)) {
+    pub fn weigh(&mut self, bsdf: &(impl Resample + ?Sized)) {
         let len = self.len;
         let candidates = CandidateColumns {
             wi: self

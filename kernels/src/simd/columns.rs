@@ -13,6 +13,8 @@ use core::ptr;
 pub trait Row<const I: usize, const N: usize>: Copy {
     /// True if columns may be left out. An empty input other than the first then reads as 0, and an empty output is not written.
     const OPTIONAL: bool = false;
+    /// True if inputs may be left out as well, where columns may.
+    const OPTIONAL_INPUTS: bool = Self::OPTIONAL;
     /// True if two packets are computed side by side. Set it to false if their code together would not fit the CPU's instruction
     /// cache.
     const PAIRS: bool = true;
@@ -52,28 +54,8 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
     /// Takes the columns that are as long as the first input, and leaves out the others.
     #[inline(always)]
     pub(crate) fn some(inputs: &[&'a [f32]; I], outputs: &'a mut [&mut [f32]; N]) -> Self {
-        Self::new(inputs, outputs)
-    }
-
-    /// Takes the columns if they are of one length, and returns `None` otherwise.
-    #[inline(always)]
-    pub(crate) fn all(inputs: [&'a [f32]; I], mut outputs: [&'a mut [f32]; N]) -> Option<Self> {
-        let columns = Self::new(&inputs, &mut outputs);
-        (columns.absent == 0).then_some(columns)
-    }
-
-    /// Callers must borrow the outputs for as long as the columns exist.
-    #[inline(always)]
-    fn new(inputs: &[&[f32]; I], outputs: &mut [&mut [f32]; N]) -> Self {
         let len = inputs[0].len();
-        let (from, to) = ([ptr::null(); I], [ptr::null_mut(); N]);
-        let mut columns = Self {
-            inputs: from,
-            outputs: to,
-            len,
-            absent: 0,
-            slices: PhantomData,
-        };
+        let mut columns = Self::empty(len);
         each!(i < I, {
             columns.inputs[i] = inputs[i].as_ptr();
             columns.absent |= u32::from(inputs[i].len() != len) << i;
@@ -83,6 +65,17 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
             columns.absent |= u32::from(outputs[i].len() != len) << (I + i);
         });
         columns
+    }
+
+    #[inline(always)]
+    fn empty(len: usize) -> Self {
+        Self {
+            inputs: [ptr::null(); I],
+            outputs: [ptr::null_mut(); N],
+            len,
+            absent: 0,
+            slices: PhantomData,
+        }
     }
 
     /// Returns the columns from row `first` on.
@@ -202,7 +195,7 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
         const { assert!(I <= 15 && N <= 15, "every column is read or written") };
         let mut input = [L::splat(0.0); I];
         each!(i < I, {
-            if !R::OPTIONAL || self.absent >> i & 1 == 0 {
+            if !R::OPTIONAL_INPUTS || self.absent >> i & 1 == 0 {
                 // SAFETY: the column has these rows.
                 input[i] = L::read_fresh(unsafe { &*self.inputs[i].add(at).cast() });
             }
@@ -214,6 +207,51 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
                 row[i].write(unsafe { &mut *self.outputs[i].add(at).cast() });
             }
         });
+    }
+}
+
+/// Columns of a call in the making: outputs are added, or left out, one after the other.
+pub(crate) struct Naming<'a, const I: usize, const N: usize> {
+    columns: Columns<'a, I, N>,
+    /// 0 if all columns so far are of one length. Bits are collected instead of branches, because the check is most of the cost of a
+    /// short slice.
+    differ: usize,
+}
+
+impl<'a, const I: usize, const N: usize> Naming<'a, I, N> {
+    #[inline(always)]
+    pub(crate) fn new(inputs: &[&'a [f32]; I]) -> Self {
+        let len = inputs[0].len();
+        let (mut columns, mut differ) = (Columns::empty(len), 0);
+        each!(i < I, {
+            columns.inputs[i] = inputs[i].as_ptr();
+            differ |= inputs[i].len() ^ len;
+        });
+        Self { columns, differ }
+    }
+
+    /// Adds the outputs from place `at` on, or leaves them out.
+    #[inline(always)]
+    pub(crate) fn output<const K: usize>(
+        mut self,
+        at: usize,
+        outputs: Option<[&'a mut [f32]; K]>,
+    ) -> Self {
+        if let Some(outputs) = outputs {
+            each!(i < K, {
+                self.columns.outputs[at + i] = outputs[i].as_mut_ptr();
+                self.differ |= outputs[i].len() ^ self.columns.len;
+            });
+        } else {
+            self.columns.absent |= ((1 << K) - 1) << (I + at);
+        }
+        self
+    }
+
+    /// Returns the columns, or `None` if they differ in length.
+    #[inline(always)]
+    pub(crate) fn all(self) -> Option<Columns<'a, I, N>> {
+        (self.differ == 0).then_some(self.columns)
     }
 }
 

@@ -4,7 +4,7 @@
     reason = "calls into functions of target features that a `Level` proves present"
 )]
 
-use super::columns::{Columns, Row};
+use super::columns::{Columns, Naming, Row};
 use super::lanes::Lanes;
 use super::portable::{FUSES, Portable};
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -70,11 +70,17 @@ enum Kind {
     Avx512,
 }
 
+/// True in builds of developers that compile models for the portable level alone, in half the time: see CONTRIBUTING.md.
+const PORTABLE_ALONE: bool = cfg!(hairis_portable_alone);
+
 impl Level {
     /// Returns the best level of this CPU. The level is detected once; later calls are a load and a compare.
     #[inline(always)]
     #[must_use]
     pub fn detect() -> Self {
+        if PORTABLE_ALONE {
+            return Self::portable();
+        }
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         {
             if avx512::get() {
@@ -104,7 +110,8 @@ impl Level {
         ];
         #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
         let more: [Option<Self>; 0] = [];
-        core::iter::once(Self::portable()).chain(more.into_iter().flatten())
+        let more = more.into_iter().flatten().filter(|_| !PORTABLE_ALONE);
+        core::iter::once(Self::portable()).chain(more)
     }
 
     /// Returns the name of the instruction set, for reports: `avx2+fma`, `avx512`, or the one that the program was compiled for.
@@ -270,6 +277,9 @@ impl Level {
     /// Runs `kernel` and wraps its output, in each branch, so that the output is written to the place of the result.
     #[inline(always)]
     pub(crate) fn run_into<K: Kernel, T>(self, kernel: K, wrap: impl Fn(K::Output) -> T) -> T {
+        if PORTABLE_ALONE {
+            return wrap(run_portable(kernel));
+        }
         match self.0 {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             // SAFETY: a `Level` of this kind is made only where these features were found.
@@ -297,9 +307,10 @@ impl Level {
     ) {
         if R::OPTIONAL {
             self.run_columns(row, &Columns::some(&inputs, outputs));
-        } else if let Some(columns) =
-            Columns::all(inputs, outputs.each_mut().map(|column| &mut **column))
-        {
+            return;
+        }
+        let outputs = outputs.each_mut().map(|column| &mut **column);
+        if let Some(columns) = Naming::new(&inputs).output(0, Some(outputs)).all() {
             self.run_columns(row, &columns);
         }
     }
@@ -312,7 +323,7 @@ impl Level {
         columns: &Columns<'_, I, N>,
     ) {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        if self.0 != Kind::Portable {
+        if !PORTABLE_ALONE && self.0 != Kind::Portable {
             let mut done = 0;
             if self.0 == Kind::Avx512 {
                 // SAFETY: a `Level` of this kind is made only where these features were found; there are as many packets.

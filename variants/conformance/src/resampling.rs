@@ -7,7 +7,8 @@ use crate::probe::{Draws, hits8, packet, triples};
 use core::f32::consts::PI;
 use glam::Vec3;
 use hairis::Hit;
-use hairis::resample::{Counts, Partition, Pool, Reservoir8};
+use hairis::model::DynBsdf;
+use hairis::resample::{Counts, Partition, Pool, Reservoir8, Weighed8};
 use hairis::simd::{Level, f32x8};
 
 const NAME: &str = "resampling is unbiased";
@@ -137,7 +138,8 @@ impl Plain<'_> {
         let mut pool = Pool::<16>::new(counts, partition).expect("16 candidates at most");
         let xi: Vec<[f32; 3]> = (0..counts.bsdf).map(|_| draws.xi3()).collect();
         let xi = [0, 1, 2].map(|axis| xi.iter().map(|xi| xi[axis]).collect::<Vec<_>>());
-        pool.propose(self.bsdf, xi.each_ref().map(|column| &column[..]))
+        let bsdf: &dyn DynBsdf = self.bsdf;
+        pool.propose(bsdf, xi.each_ref().map(|column| &column[..]))
             .expect("of one length");
         for i in 0..counts.light as usize {
             let wi = self.light.draw(draws);
@@ -145,7 +147,7 @@ impl Plain<'_> {
             pool.set_light(i, wi, radiance, pdf);
         }
         pool.look_up(|wi| self.light.look_up(wi));
-        pool.weigh(self.bsdf);
+        pool.weigh(bsdf);
         let chosen: Vec<_> = pool.choose(k, draws.xi()).collect();
         let count: u32 = chosen.iter().map(|(_, choice)| choice.count).sum();
         assert!(chosen.is_empty() || count == k, "{count} of {k} choices");
@@ -173,7 +175,10 @@ fn reservoirs(bsdf: &dyn ErasedBsdf8, light: Light, level: Level, draws: &mut Dr
     let mut kept = [Reservoir8::default().with_level(level); 2];
     for i in 0..8 {
         let wi = if i < 4 {
-            bsdf.propose8(&triples(&core::array::from_fn(|_| draws.xi3())))
+            let sample = bsdf.sample8(&triples(&core::array::from_fn(|_| draws.xi3())));
+            packet(&core::array::from_fn(|lane| {
+                sample.lane(lane).map_or(Vec3::ZERO, |sample| sample.wi)
+            }))
         } else {
             packet(&core::array::from_fn(|_| light.draw(draws)))
         };
@@ -182,7 +187,8 @@ fn reservoirs(bsdf: &dyn ErasedBsdf8, light: Light, level: Level, draws: &mut Dr
             triples(&found.map(|(rgb, _)| rgb)),
             f32x8::new(found.map(|(_, pdf)| pdf)),
         );
-        let weighed = bsdf.weigh8(&wi, &radiance, &pdf, counts, Partition::All);
+        let (eval, cos) = (bsdf.eval_pdf8(&wi), wi.cos_theta());
+        let weighed = Weighed8::new(&eval, &cos, &radiance, &pdf, counts, Partition::All);
         kept[i % 2].add(
             &wi,
             &weighed,

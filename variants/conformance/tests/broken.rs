@@ -262,6 +262,7 @@ impl Model for Fiber {
     type Material<C: Scalar> = Faulty<Material<C>>;
     type Prepared<C: Scalar> = Faulty<Point<C>>;
     type Fit<C: Scalar> = [C; 0];
+    type Inner = Self;
 
     const LOBES: &'static [&'static str] = &["diffuse", "cone"];
     const CONSERVES: bool = true;

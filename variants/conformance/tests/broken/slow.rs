@@ -15,6 +15,7 @@ impl Model for Slow {
     type Material<C: Scalar> = <Fiber as Model>::Material<C>;
     type Prepared<C: Scalar> = <Fiber as Model>::Prepared<C>;
     type Fit<C: Scalar> = [C; 0];
+    type Inner = Self;
 
     const LOBES: &'static [&'static str] = Fiber::LOBES;
     const CONSERVES: bool = true;
