@@ -1,4 +1,8 @@
 //! Contenders of `hairis compare`: the formulas in scalar code, and the kernel on one lane, on eight lanes and in slices.
+//!
+//! Kernels at a prepared hit are those of the list of models, behind its run-time handles, because kernels of typed handles would be
+//! compiled once more here. The choice of the model is part of the time of each call: one or two nanoseconds. Only preparing and calls
+//! on hits are typed, because a handle of any model is copied as the largest of them, and has no calls on hits.
 
 mod inputs;
 mod points;
@@ -18,7 +22,7 @@ use hairis::columns::{EvalColumns, SampleColumns};
 use hairis::simd::{Level, f32x8};
 use hairis::{Material, ParamError, Vec3x8};
 use hairis_reference::{Formulas, Reference, Visitor, reference, visit};
-use hairis_variants::{ModelId, Parameters};
+use hairis_variants::{AnyMaterial, ModelId, Parameters};
 use serde::Serialize;
 
 /// Operation that `hairis compare` times.
@@ -231,20 +235,20 @@ impl Contenders {
     }
 }
 
-/// Material in three implementations: the kernel, and the formulas with the libm crate and with std.
+/// Material in three implementations: the kernel, behind a handle of any model, and the formulas with the libm crate and with std.
 struct Implementations<M: Formulas> {
-    material: Material<M>,
+    material: AnyMaterial,
     libm: M::Constants<f32>,
     std: M::Constants<Platform>,
 }
 
 impl<M: Formulas> Implementations<M> {
-    fn new(params: &M::Params) -> Self {
-        Self {
-            material: Material::new(&M::MODEL, params),
+    fn new(params: &M::Params) -> Result<Self, ParamError> {
+        Ok(Self {
+            material: ModelId::of::<M>().material(&params.values())?,
             libm: M::formulas(params),
             std: M::formulas(params),
-        }
+        })
     }
 
     /// Returns the formulas seen from `wo`, with the libm crate and with std.
@@ -259,11 +263,8 @@ impl<M: Formulas> Implementations<M> {
 
 fn prepare<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let params = &inputs.params[0];
-    let Implementations::<M> {
-        material,
-        libm,
-        std,
-    } = Implementations::new(params);
+    let Implementations::<M> { libm, std, .. } = Implementations::new(params)?;
+    let material = Material::new(&M::MODEL, params);
     let wo = arrays(&inputs.wo);
     let contenders = Contenders::new(
         task(&wo, move |wo| {
@@ -290,7 +291,7 @@ fn eval_pdf<M: Formulas>(
     every_way: bool,
 ) -> Entrants {
     let (wo, wi) = (inputs.wo[0], arrays(&inputs.wi));
-    let implementations = Implementations::<M>::new(params);
+    let implementations = Implementations::<M>::new(params)?;
     let ((libm, std), bsdf) = (
         implementations.references(wo),
         implementations.material.prepare(wo),
@@ -341,7 +342,7 @@ fn sample<M: Formulas>(
     every_way: bool,
 ) -> Entrants {
     let (wo, xi) = (inputs.wo[0], &inputs.xi);
-    let implementations = Implementations::<M>::new(params);
+    let implementations = Implementations::<M>::new(params)?;
     let ((libm, std), bsdf) = (
         implementations.references(wo),
         implementations.material.prepare(wo),
