@@ -24,9 +24,9 @@ if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then
 fi
 # Energy of 10,000 materials of each kind and bell: figures are printed.
 HAIRIS_MATERIALS=10000 cargo test -q --locked --release -p hairis --all-features --test main conserves_energy -- --nocapture || failed=1
-cargo test -q --locked -p hairis-harness --lib -- --ignored || failed=1
+cargo test -q --locked -p hairis-harness -p hairis-study -- --ignored || failed=1
 cargo test -q --locked --release -p hairis-render --test main -- --ignored || failed=1
-cargo test -q --locked -p hairis-harness -p hairis-render -p hairis-variants -p hairis-gradients --features hairis-variants/every-sampler \
+cargo test -q --locked -p hairis-harness -p hairis-study -p hairis-render -p hairis-variants -p hairis-gradients --features hairis-variants/every-sampler \
   || failed=1
 # The C library with every sampler: at most 4 MB, and the answers of Rust.
 library() {

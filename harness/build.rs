@@ -1,5 +1,5 @@
 //! Records the build for reports: compiler, commit and optimisation level. Without git or without a repository the commit is
-//! "unknown". Also the build script of the renderer; `hairis_instruments::machine!` reads what it records.
+//! "unknown". Also the build script of hairis-study and of the renderer; `hairis_instruments::machine!` reads what it records.
 
 use std::path::Path;
 use std::process::Command;
@@ -42,7 +42,7 @@ fn main() {
         status.map_or("unknown", |s| if s.is_empty() { "no" } else { "yes" }),
     );
 
-    // Commits, checkouts and edits of these sources run this again; they rebuild the harness anyway, save a commit.
+    // Commits, checkouts and edits of these sources run this again; they rebuild the package anyway, save a commit.
     watch("Cargo.toml");
     watch("src");
     if let Some(root) = ["..", "../.."]
@@ -55,9 +55,13 @@ fn main() {
             "kernels/src",
             "variants/src",
             "harness/instruments/src",
+            "harness/program/src",
             "benches/src",
         ] {
             watch(&format!("{root}/{path}"));
+        }
+        if std::env::var("CARGO_PKG_NAME").is_ok_and(|name| name == "hairis-study") {
+            watch(&format!("{root}/harness/src"));
         }
     }
     if ours {

@@ -1,12 +1,8 @@
-//! Subcommands of `hairis`, one per file, and the helpers that they share.
+//! Subcommands of `hairis`, one per file, and the helpers that they share. Some are programs of their own, which are found and started.
 
-pub mod claims;
 pub mod compare;
 pub mod eval;
-pub mod fit;
-pub mod merge;
-pub mod shader;
-pub mod study;
+mod other;
 
 use crate::args::Command;
 use hairis_instruments::error::Error;
@@ -22,39 +18,47 @@ use std::path::Path;
 ///
 /// Returns an [`Error`] if the command was stopped, or if a check failed.
 pub fn run(command: &Command) -> Result<(), Error> {
-    if !matches!(command, Command::Eval(_) | Command::Shader(_)) {
-        check_threads();
-    }
     match command {
         Command::Eval(flags) => eval::run(flags),
-        Command::Compare(flags) => compare::run(flags),
-        Command::Study(flags) => study::run(flags),
-        Command::Claims(flags) => claims::run(flags),
-        Command::Merge(flags) => merge::run(flags),
-        Command::Shader(flags) => shader::run(flags),
-        Command::Fit(flags) => fit::run(flags),
+        Command::Compare(flags) => {
+            check_threads();
+            compare::run(flags)
+        }
+        Command::Study(words) => other::STUDY.run(Some("study"), words),
+        Command::Claims(words) => other::STUDY.run(Some("claims"), words),
+        Command::Merge(words) => other::STUDY.run(Some("merge"), words),
+        Command::Fit(words) => other::STUDY.run(Some("fit"), words),
+        Command::Shader(words) => other::SHADER.run(None, words),
     }
 }
 
 /// Loads the environment from a file, or a layer of the file, and returns it with its name in reports; without a file, returns the
-/// procedural sky. Oddities of the file are reported on standard error. A map without light is an error.
-fn environment(path: Option<&Path>, layer: Option<&str>) -> Result<(Environment, String), Error> {
+/// procedural sky. Oddities of the file are reported on standard error.
+///
+/// # Errors
+///
+/// Returns [`Error::Environment`] if the file cannot be read, or if its map gives no light.
+pub fn environment(
+    path: Option<&Path>,
+    layer: Option<&str>,
+) -> Result<(Environment, String), Error> {
     let Some(path) = path else {
         return Ok((Sky::default().environment(), "procedural sky".to_owned()));
     };
-    let environment = Environment::load_layer(path, layer).map_err(Error::Environment)?;
+    let environment = Environment::load_layer(path, layer)?;
     if environment.is_black() {
-        return Err(Error::Environment(LightError::black(
-            path,
-            environment.repairs(),
-        )));
+        return Err(LightError::black(path, environment.repairs()).into());
     }
     environment.notes().iter().for_each(|note| say(note));
     Ok((environment, path.display().to_string()))
 }
 
 /// Prints tables on standard output. If the reader closes the pipe early, names the file that has the tables on standard error.
-fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>, file: &Path) -> Result<(), Error> {
+///
+/// # Errors
+///
+/// Returns [`Error::Write`] for every failure other than a closed pipe.
+pub fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>, file: &Path) -> Result<(), Error> {
     let mut out = io::stdout().lock();
     for table in tables {
         match writeln!(out, "{}", table.to_text(None)).and_then(|()| out.flush()) {
@@ -72,7 +76,11 @@ fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>, file: &Path) -> Res
 }
 
 /// Reports the failures on standard error, and returns an error if there are any.
-fn report_failures(failures: &[String]) -> Result<(), Error> {
+///
+/// # Errors
+///
+/// Returns [`Error::Failed`] with their number.
+pub fn report_failures(failures: &[String]) -> Result<(), Error> {
     failures
         .iter()
         .for_each(|failure| say(&format!("failed: {failure}")));

@@ -14,8 +14,8 @@ use crate::efficiency::{self, EfficiencyConfig, EfficiencyResult, SAMPLERS, Samp
 use crate::materials::{self, MaterialPose, MaterialRow, NamedMaterial};
 use crate::rays::{self as ray_figures, RaysConfig, RaysResult};
 use crate::speed::{self, SpeedConfig, SpeedReport};
-use crate::study::output::Times;
 use crate::subject::ModelKind;
+use crate::times::Times;
 use crate::variance::SampleBudget;
 use hairis::ParamError;
 use hairis_instruments::light::Environment;

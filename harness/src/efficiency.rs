@@ -50,13 +50,10 @@ pub use result::{
 };
 pub use run::run;
 
-#[cfg(test)]
-pub(crate) use case::Case;
-pub(crate) use measure::{bias_z, is_tested};
-pub(crate) use reference::stratified;
-#[cfg(test)]
-pub(crate) use reference::{by_quadrature, perfect_v, ray_v};
-pub(crate) use run::z_bound;
+pub use case::Case;
+pub use measure::{bias_z, is_tested};
+pub use reference::{ExactVariance, by_quadrature, exact_variance, perfect_v, ray_v, stratified};
+pub use run::z_bound;
 
 use crate::lights::Lights;
 use crate::sampler::Sampler;
@@ -117,7 +114,7 @@ pub struct SampleCosts {
 
 impl SampleCosts {
     /// Returns the time of a sample of `sampler` for `model`, in ns, or NaN for a sampler that is not compared.
-    pub(crate) fn ns(&self, model: ModelKind, sampler: Sampler) -> f64 {
+    pub fn ns(&self, model: ModelKind, sampler: Sampler) -> f64 {
         let each = match model {
             ModelKind::Gaussian => &self.gaussian,
             ModelKind::Cauchy => &self.cauchy,
@@ -215,7 +212,7 @@ impl<'a> EfficiencyConfig<'a> {
 ///
 /// # Errors
 /// Returns an error if a width leaves its range.
-pub(crate) fn with_beta(base: &HairParams, beta_r_deg: f32) -> Result<HairParams, ParamError> {
+pub fn with_beta(base: &HairParams, beta_r_deg: f32) -> Result<HairParams, ParamError> {
     let beta_r = beta_r_deg.to_radians();
     HairParams::new(&HairDesc {
         beta: [beta_r, 0.5 * beta_r, 2.0 * beta_r],
@@ -224,7 +221,7 @@ pub(crate) fn with_beta(base: &HairParams, beta_r_deg: f32) -> Result<HairParams
 }
 
 /// Returns the mean of a colour, on which all figures are based.
-pub(crate) fn intensity(rgb: [f64; 3]) -> f64 {
+pub fn intensity(rgb: [f64; 3]) -> f64 {
     (rgb[0] + rgb[1] + rgb[2]) / 3.0
 }
 

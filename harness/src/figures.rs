@@ -2,7 +2,7 @@
 
 mod looks;
 
-pub use looks::{maps, polar};
+pub use looks::{polar, scatter};
 
 use core::f64::consts::{PI, SQRT_2};
 use glam::Vec3;

@@ -2,13 +2,10 @@
 
 pub mod agreement;
 pub mod args;
-pub mod claims;
 pub mod cmd;
 pub mod compare;
-pub mod difference;
 pub mod efficiency;
 pub mod figures;
-pub mod fit;
 #[cfg(any(doc, doctest))]
 pub mod guide;
 pub mod journal;
@@ -16,11 +13,11 @@ pub mod lights;
 pub mod materials;
 pub mod rays;
 pub mod sampler;
-mod sealed;
+pub mod sealed;
 pub mod speed;
-pub mod study;
 pub mod subject;
-mod timer;
+pub mod timer;
+pub mod times;
 pub mod variance;
 
 /// Example of the workspace README, which is compiled and run as a doctest.

@@ -19,7 +19,7 @@ use hairis_instruments::progress::Progress;
 use hairis_instruments::sequence::stream_id;
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::{Table, number};
-use hairis_materials::material::values_json;
+use hairis_materials::material::{self, values_json};
 use hairis_materials::{MaterialSpec, files, numbered};
 use hairis_reference::reference;
 use hairis_variants::{ModelId, Values};
@@ -31,7 +31,7 @@ use std::path::PathBuf;
 const OFFSET: f32 = 0.5;
 
 /// Name of perfect sampling in rows and reports; see [`variance`].
-pub(crate) const PERFECT: &str = "perfect";
+pub const PERFECT: &str = "perfect";
 
 /// Value below which V is only rounding of single precision.
 const NOTHING: f64 = 1e-9;
@@ -63,7 +63,7 @@ pub struct MaterialKey {
 
 impl MaterialKey {
     /// Returns the names of the samplers and of perfect sampling, in the order of the rows.
-    pub(crate) fn strategies(&self) -> impl Iterator<Item = &str> {
+    pub fn strategies(&self) -> impl Iterator<Item = &str> {
         let samplers = self.samplers.iter().map(String::as_str);
         samplers.chain([PERFECT])
     }
@@ -74,14 +74,8 @@ impl MaterialKey {
 /// # Errors
 ///
 /// Returns [`Error::Usage`], which names `flag`, if there is no such model.
-pub(crate) fn find_model(flag: &str, name: &str) -> Result<ModelId, Error> {
-    ModelId::find(name, None).ok_or_else(|| {
-        let names: Vec<&str> = ModelId::defaults_of_names().map(ModelId::name).collect();
-        Error::Usage(format!(
-            "{flag} must be one of {}, got {name:?}",
-            names.join(", ")
-        ))
-    })
+pub fn find_model(flag: &str, name: &str) -> Result<ModelId, Error> {
+    material::find_model(name).map_err(|problem| Error::Usage(format!("{flag} {problem}")))
 }
 
 /// Returns the materials that names of models and files stand for. A model stands for each of its presets.
@@ -161,7 +155,7 @@ impl NamedMaterial {
     /// # Errors
     ///
     /// Returns an error if the material's parameters are rejected.
-    pub(crate) fn measure(
+    pub fn measure(
         &self,
         seed: u64,
         budget: SampleBudget,
@@ -194,7 +188,7 @@ impl NamedMaterial {
     /// # Errors
     ///
     /// Returns an error if the material's parameters are rejected.
-    pub(crate) fn set_bounds(
+    pub fn set_bounds(
         &self,
         theta_o_deg: f64,
         measured: &mut [Measured],
@@ -217,13 +211,18 @@ fn viewer(theta_o_deg: f64) -> Vec3 {
 }
 
 /// Row of results: one sampler of a material under one light, from one inclination.
-#[derive(Clone, Copy)]
-pub(crate) struct MaterialRow<'a> {
-    pub(crate) material: &'a MaterialKey,
-    pub(crate) sampler: &'a str,
-    pub(crate) light: &'a str,
-    pub(crate) theta_o_deg: f64,
-    pub(crate) measured: &'a Measured,
+#[derive(Clone, Copy, Debug)]
+pub struct MaterialRow<'a> {
+    /// Material.
+    pub material: &'a MaterialKey,
+    /// Name of the sampler.
+    pub sampler: &'a str,
+    /// Name of the light.
+    pub light: &'a str,
+    /// Inclination of the viewer, in degrees.
+    pub theta_o_deg: f64,
+    /// Figures of the row.
+    pub measured: &'a Measured,
 }
 
 impl<'a> MaterialRow<'a> {
@@ -234,7 +233,7 @@ impl<'a> MaterialRow<'a> {
 }
 
 /// Returns the rows of a material from an inclination, given its figures in the order of [`NamedMaterial::measure`].
-pub(crate) fn rows<'a>(
+pub fn rows<'a>(
     material: &'a MaterialKey,
     lights: &'a [String],
     theta_o_deg: f64,
@@ -252,7 +251,7 @@ pub(crate) fn rows<'a>(
 }
 
 /// Returns the rows as columns: `material`, `model`, `theta_o_deg`, `sampler` and `light`, then the figures of a study.
-pub(crate) fn columns(rows: &[MaterialRow<'_>]) -> Columns {
+pub fn columns(rows: &[MaterialRow<'_>]) -> Columns {
     let text = |of: fn(&MaterialRow<'_>) -> String| rows.iter().map(of);
     let columns = Columns::default()
         .text("material", text(|row| row.material.name.clone()))
@@ -292,7 +291,7 @@ fn mean(rows: &[MaterialRow<'_>], figure: &dyn Fn(&Measured) -> Estimate) -> Est
 }
 
 /// Returns the table of V of every sampler of every material, as geometric means over the inclinations.
-pub(crate) fn table(rows: &[MaterialRow<'_>]) -> Table {
+pub fn table(rows: &[MaterialRow<'_>]) -> Table {
     let mut table = Table::new("V of one sample of other materials")
         .texts(["material", "model", "sampler", "light"])
         .numbers(["V", "uniform / V", "largest weight"])
@@ -326,7 +325,7 @@ pub(crate) fn table(rows: &[MaterialRow<'_>]) -> Table {
 }
 
 /// Returns a line for each figure that cannot be right, by the rules of a study.
-pub(crate) fn failures(rows: &[MaterialRow<'_>]) -> Vec<String> {
+pub fn failures(rows: &[MaterialRow<'_>]) -> Vec<String> {
     let checked = rows.iter().map(|row| {
         let [name, sampler, light] = row.key();
         Checked {
@@ -360,7 +359,7 @@ struct MaterialEntry {
 
 impl MaterialPose {
     /// Returns the rows of the material from this inclination.
-    pub(crate) fn rows(&self) -> impl Iterator<Item = MaterialRow<'_>> {
+    pub fn rows(&self) -> impl Iterator<Item = MaterialRow<'_>> {
         self.rows.iter().map(|row| MaterialRow {
             material: &self.material,
             sampler: &row.sampler,

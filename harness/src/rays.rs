@@ -36,10 +36,10 @@ pub use run::{RaysConfig, run};
 pub use subject::RaySubject;
 pub use times::RayTimes;
 
-pub(crate) use candidates::{LightBlocks, Lit, numbers};
-pub(crate) use measure::{Unoccluded, unoccluded};
-pub(crate) use result::occluded;
-pub(crate) use times::measure as measure_times;
+pub use candidates::{LightBlocks, Lit, numbers};
+pub use measure::{Unoccluded, unoccluded};
+pub use result::occluded;
+pub use times::measure as measure_times;
 
 #[cfg(doc)]
 use crate::efficiency::Check;

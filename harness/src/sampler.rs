@@ -55,7 +55,7 @@ impl Sampler {
     };
 
     /// Returns the name of the sampler in reports and in rows.
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Uniform => "uniform",
             Self::Published => "published",
@@ -66,7 +66,7 @@ impl Sampler {
     }
 
     /// Returns the number of uniform numbers per sample.
-    pub(crate) const fn dims(self) -> usize {
+    pub const fn dims(self) -> usize {
         match self {
             Self::Uniform => 2,
             _ => 3,
@@ -74,7 +74,7 @@ impl Sampler {
     }
 
     /// Returns the number of bands of a sampler that is matched to the model.
-    pub(crate) const fn bands(self) -> Option<usize> {
+    pub const fn bands(self) -> Option<usize> {
         match self {
             Self::Uniform | Self::Published => None,
             Self::Matched5 => Some(5),
@@ -84,12 +84,12 @@ impl Sampler {
     }
 
     /// Returns the sampler's number among the streams of random numbers, ordered by the number of bands.
-    pub(crate) const fn index(self) -> u64 {
+    pub const fn index(self) -> u64 {
         self.color() as u64
     }
 
     /// Returns the number of the sampler's colour, the same in every chart of every report.
-    pub(crate) const fn color(self) -> usize {
+    pub const fn color(self) -> usize {
         match self {
             Self::Uniform => 0,
             Self::Published => 1,
@@ -106,7 +106,7 @@ impl Sampler {
 ///   `theta_i = -theta_o`.
 /// - `published`: none in closed form. Its glints end at `|phi| = pi/2`; other lobes sample their tails beyond it.
 /// - `matched`: the integral of all lobes, times the largest ratio of W to its constant in a band.
-pub(crate) fn weight_bound(
+pub fn weight_bound(
     model: ModelKind,
     sampler: Sampler,
     params: &HairParams,
@@ -127,18 +127,18 @@ pub(crate) fn weight_bound(
 }
 
 /// Density of a uniform direction, per steradian.
-pub(crate) const UNIFORM_PDF: f32 = 0.25 / PI;
+pub const UNIFORM_PDF: f32 = 0.25 / PI;
 
 /// Shading point with one of the samplers.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Scatter {
+pub struct Scatter {
     bsdf: AnyBsdf,
     is_uniform: bool,
 }
 
 impl Scatter {
     /// Prepares this hair, seen from `wo`.
-    pub(crate) fn new(model: ModelKind, sampler: Sampler, params: &HairParams, wo: Vec3) -> Self {
+    pub fn new(model: ModelKind, sampler: Sampler, params: &HairParams, wo: Vec3) -> Self {
         Self {
             bsdf: material(model, sampler, params).prepare(wo),
             is_uniform: sampler == Sampler::Uniform,
@@ -146,11 +146,12 @@ impl Scatter {
     }
 
     /// Wraps a prepared shading point, with the model's own sampler or with uniform directions.
-    pub(crate) const fn at(bsdf: AnyBsdf, is_uniform: bool) -> Self {
+    pub const fn at(bsdf: AnyBsdf, is_uniform: bool) -> Self {
         Self { bsdf, is_uniform }
     }
 
-    pub(crate) fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
+    /// Draws eight samples, one per lane, from three rows of uniform numbers.
+    pub fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
         if self.is_uniform {
             let wi = uniform8(xi);
             uniform_sample8(wi, self.bsdf.eval_pdf8(&wi))
@@ -159,7 +160,8 @@ impl Scatter {
         }
     }
 
-    pub(crate) fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
+    /// Returns value and density of eight directions, one per lane.
+    pub fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
         let eval = self.bsdf.eval_pdf8(wi);
         if self.is_uniform {
             Eval8 {
@@ -177,7 +179,7 @@ impl Scatter {
 /// # Panics
 ///
 /// Never panics, because every sampler of the models is registered, and their parameters are those of hair.
-pub(crate) fn material(model: ModelKind, sampler: Sampler, params: &HairParams) -> AnyMaterial {
+pub fn material(model: ModelKind, sampler: Sampler, params: &HairParams) -> AnyMaterial {
     let word = sampler.bands().map(|_| sampler.name());
     let id = ModelId::find(model.name(), word).expect("a registered sampler");
     id.material(&params.values()).expect("parameters of hair")
@@ -185,7 +187,7 @@ pub(crate) fn material(model: ModelKind, sampler: Sampler, params: &HairParams) 
 
 /// Returns eight directions uniform on the sphere, from the last two of three numbers.
 #[inline]
-pub(crate) fn uniform8(xi: &[f32x8; 3]) -> Vec3x8 {
+pub fn uniform8(xi: &[f32x8; 3]) -> Vec3x8 {
     let one = f32x8::splat(1.0);
     let u = one - (xi[1] + xi[1]);
     // As the product (1 - u)(1 + u), so that nothing cancels near the poles.
@@ -196,7 +198,7 @@ pub(crate) fn uniform8(xi: &[f32x8; 3]) -> Vec3x8 {
 
 /// Returns the samples of uniform directions that evaluate to `eval`.
 #[inline]
-pub(crate) fn uniform_sample8(wi: Vec3x8, eval: Eval8) -> Sample8 {
+pub fn uniform_sample8(wi: Vec3x8, eval: Eval8) -> Sample8 {
     let factor = cosine(&wi) * f32x8::splat(1.0 / UNIFORM_PDF);
     let [r, g, b] = eval.value;
     let weight = [r * factor, g * factor, b * factor];

@@ -7,7 +7,7 @@ use std::io;
 const CHECKSUM: [&str; 2] = [",\"checksum\":\"", "\"}"];
 
 /// Returns a hash of bytes (FNV-1a). A line's hash is over the bytes before its checksum.
-pub(crate) fn checksum(line: &[u8]) -> String {
+pub fn checksum(line: &[u8]) -> String {
     let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
     format!("{:016x}", line.iter().fold(0xcbf2_9ce4_8422_2325, step))
 }
@@ -30,7 +30,7 @@ pub fn line(content: &impl Serialize) -> io::Result<Vec<u8>> {
 }
 
 /// Returns the object in a line, and whether its checksum is right; `None` if it has none.
-pub(crate) fn unseal(line: &[u8]) -> Option<(Vec<u8>, bool)> {
+pub fn unseal(line: &[u8]) -> Option<(Vec<u8>, bool)> {
     let [before, after] = CHECKSUM.map(str::as_bytes);
     let (rest, sum) = line.strip_suffix(after)?.split_last_chunk::<16>()?;
     let content = rest.strip_suffix(before)?;

@@ -21,12 +21,12 @@ impl ModelKind {
     pub const ALL: [Self; 2] = [Self::Gaussian, Self::Cauchy];
 
     /// Returns the name of the model in reports.
-    pub(crate) const fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         self.id().name()
     }
 
     /// Returns the registry's entry of the model with the published sampler.
-    pub(crate) const fn id(self) -> ModelId {
+    pub const fn id(self) -> ModelId {
         match self {
             Self::Gaussian => ModelId::Gaussian,
             Self::Cauchy => ModelId::Cauchy,
@@ -34,7 +34,7 @@ impl ModelKind {
     }
 
     /// Returns the name of the model in titles and sentences.
-    pub(crate) const fn title(self) -> &'static str {
+    pub const fn title(self) -> &'static str {
         match self {
             Self::Gaussian => "Gaussian",
             Self::Cauchy => "Cauchy",
@@ -42,7 +42,7 @@ impl ModelKind {
     }
 
     /// Returns the model's bell in the reference.
-    pub(crate) const fn shape(self) -> Shape {
+    pub const fn shape(self) -> Shape {
         match self {
             Self::Gaussian => Shape::Gaussian,
             Self::Cauchy => Shape::Cauchy,
@@ -50,7 +50,7 @@ impl ModelKind {
     }
 
     /// Returns the formulas of the model with the matched sampler of so many bands, or with the published one.
-    pub(crate) const fn formulas(self, bands: Option<usize>) -> HairFormulas {
+    pub const fn formulas(self, bands: Option<usize>) -> HairFormulas {
         HairFormulas {
             shape: self.shape(),
             bands,
@@ -59,7 +59,7 @@ impl ModelKind {
     }
 
     /// Returns the model's number among the streams of random numbers.
-    pub(crate) const fn index(self) -> u64 {
+    pub const fn index(self) -> u64 {
         self as u64
     }
 }

@@ -6,16 +6,16 @@ use std::time::Instant;
 
 /// Spread of a time over the rounds, in ns.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct TimeSpread {
+pub struct TimeSpread {
     /// First quartile, median and third quartile.
-    pub(crate) quartiles: [f64; 3],
+    pub quartiles: [f64; 3],
     /// Standard error of the median, as of a normal spread of the same quartiles.
-    pub(crate) standard_error: f64,
+    pub standard_error: f64,
 }
 
 impl TimeSpread {
     /// Returns the median with its standard error.
-    pub(crate) const fn median(&self) -> Estimate {
+    pub const fn median(&self) -> Estimate {
         Estimate {
             value: self.quartiles[1],
             standard_error: self.standard_error,
@@ -24,12 +24,12 @@ impl TimeSpread {
 }
 
 /// Returns the contenders in the order of a round, which changes from round to round.
-pub(crate) fn turns(count: usize, round: usize) -> impl Iterator<Item = usize> {
+pub fn turns(count: usize, round: usize) -> impl Iterator<Item = usize> {
     (0..count).map(move |k| (k + round) % count)
 }
 
 /// Times contenders in turn, in an order that changes from round to round; `time` returns the ns of a contender's stretch.
-pub(crate) fn in_turns<C>(
+pub fn in_turns<C>(
     contenders: &mut [C],
     rounds: usize,
     mut time: impl FnMut(&mut C) -> f64,
@@ -52,7 +52,7 @@ pub(crate) fn in_turns<C>(
 }
 
 /// Returns the time of `passes` passes, in ns.
-pub(crate) fn stretch(task: &mut dyn Pass, passes: u32) -> f64 {
+pub fn stretch(task: &mut dyn Pass, passes: u32) -> f64 {
     let start = Instant::now();
     for _ in 0..passes {
         task.pass();
@@ -61,7 +61,7 @@ pub(crate) fn stretch(task: &mut dyn Pass, passes: u32) -> f64 {
 }
 
 /// Returns first quartile, median and third quartile.
-pub(crate) fn quartiles(samples: &[f64]) -> [f64; 3] {
+pub fn quartiles(samples: &[f64]) -> [f64; 3] {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);
     [0.25, 0.5, 0.75].map(|p| percentile(&sorted, p))
@@ -69,6 +69,6 @@ pub(crate) fn quartiles(samples: &[f64]) -> [f64; 3] {
 
 /// Returns the standard error of the median of `count` numbers with these quartiles. The spread is taken as normal: its deviation is
 /// 1/1.349 of the quartiles' distance, and a median's error 1.2533 of a mean's.
-pub(crate) fn median_error(quartiles: [f64; 3], count: usize) -> f64 {
+pub fn median_error(quartiles: [f64; 3], count: usize) -> f64 {
     1.2533 / 1.349 * (quartiles[2] - quartiles[0]) / (count as f64).sqrt()
 }

@@ -3,14 +3,14 @@
 //! Each subject's directions are drawn once and weighed by every light. Each light's directions are drawn once and weighed by every
 //! subject. `study`, `claims` and the materials of `compare` are queries over its results.
 
-pub(crate) mod check;
+pub mod check;
 mod columns;
 mod perfect;
 mod tally;
 
-pub(crate) use columns::{By, MIS, POOLS, RAYS, figures_of, half_visible, ray_v};
-pub(crate) use perfect::SOURCE;
-pub(crate) use tally::Figures;
+pub use columns::{By, MIS, POOLS, RAYS, figures_of, half_visible, ray_v};
+pub use perfect::SOURCE;
+pub use tally::Figures;
 
 use crate::rays::{LightBlocks, Lit, Unoccluded, numbers, unoccluded};
 use crate::sampler::Scatter;
@@ -24,10 +24,10 @@ use tally::{Tally, figures, largest};
 use wide::{f32x8, f64x8};
 
 /// Relative standard error of V beyond which a figure is left out, because the light was hardly hit.
-pub(crate) const MAX_RELATIVE_ERROR: f64 = 0.25;
+pub const MAX_RELATIVE_ERROR: f64 = 0.25;
 
 /// Numbers of candidates of each technique in the pools from which rays are chosen.
-pub(crate) const POOL_SIZES: [u32; 2] = [4, 8];
+pub const POOL_SIZES: [u32; 2] = [4, 8];
 
 /// Numbers of samples for each subject. The first two are multiples of eight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,35 +71,40 @@ impl SampleBudget {
 
 /// Figures of one sampler of one model under one light.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct Measured {
+pub struct Measured {
+    /// Mean, V and divergence.
     #[serde(flatten)]
-    pub(crate) figures: Figures,
+    pub figures: Figures,
     /// Largest weight, as the mean of RGB, whatever the light.
-    pub(crate) max_weight: f64,
+    pub max_weight: f64,
     /// Proven bound on the weight, if there is one; set when a study is read.
-    pub(crate) weight_bound: Option<f64>,
+    pub weight_bound: Option<f64>,
     /// Largest contribution in means, of the directions of the sampler and of the light.
-    pub(crate) max_contribution: f64,
+    pub max_contribution: f64,
     /// V of one ray of direct light by one-sample MIS and from pools of [`POOL_SIZES`], if they were measured.
-    pub(crate) rays: Option<[Estimate; 3]>,
+    pub rays: Option<[Estimate; 3]>,
     /// Bias of the mean of rays from the largest pools, in standard errors; none if there were too few for a test.
-    pub(crate) bias: Option<f64>,
+    pub bias: Option<f64>,
 }
 
 /// Sampler at a hit.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Subject {
-    pub(crate) scatter: Scatter,
+pub struct Subject {
+    /// Sampler at the hit.
+    pub scatter: Scatter,
     /// Numbers of the model and of the sampler among the streams.
-    pub(crate) stream: [u64; 2],
+    pub stream: [u64; 2],
     /// Whether perfect sampling is estimated from the directions of this sampler.
-    pub(crate) is_source: bool,
+    pub is_source: bool,
 }
 
 /// Figures of a subject under each light, and those of perfect sampling if the subject is its source.
-pub(crate) struct Found {
-    pub(crate) sampler: Vec<Measured>,
-    pub(crate) perfect: Vec<Measured>,
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Figures of the sampler, one per light.
+    pub sampler: Vec<Measured>,
+    /// Figures of perfect sampling, one per light, or none.
+    pub perfect: Vec<Measured>,
 }
 
 /// Salt of the streams, from which no other part of the harness draws.
@@ -124,7 +129,7 @@ struct Strata {
 }
 
 /// Measures each subject at one hit, whose streams have the number `key`.
-pub(crate) fn measure(
+pub fn measure(
     [seed, key]: [u64; 2],
     budget: SampleBudget,
     lights: &[&dyn Light],

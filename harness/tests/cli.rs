@@ -1,86 +1,24 @@
 //! Tests of the binary `hairis`, which is run as scripts run it.
 
 mod agreement;
-mod claims;
 mod exact;
+mod other;
 mod refusals;
-mod shader;
 mod streams;
-mod study;
 
 use crate::cases::Case;
+use hairis_program::trial::{self, Run, names};
 use serde_json::{Value, json};
-use std::fs;
-use std::io::Write;
-use std::path::Path;
-#[cfg(unix)]
-use std::process::Child;
-use std::process::{Command, Output, Stdio};
-use std::thread;
+use std::process::Command;
 
 const PATHS: [&str; 4] = ["scalar", "x8", "batch", "f64"];
 
-/// Result of a run of the binary.
-struct Run {
-    code: Option<i32>,
-    out: Vec<String>,
-    err: Vec<String>,
-}
-
-impl Run {
-    fn json(&self) -> Vec<Value> {
-        self.out
-            .iter()
-            .map(|line| serde_json::from_str(line).unwrap())
-            .collect()
-    }
-}
-
 fn command(args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hairis"));
-    command
-        .args(args)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
-    command
-}
-
-/// Sends a signal to a process, and waits for the process to end.
-#[cfg(unix)]
-fn end(child: Child, signal: &str) -> Run {
-    let sent = Command::new("kill")
-        .args([format!("-{signal}"), child.id().to_string()])
-        .status();
-    assert!(sent.unwrap().success(), "it runs");
-    child.wait_with_output().unwrap().into()
+    trial::command(env!("CARGO_BIN_EXE_hairis"), args)
 }
 
 fn run(args: &[&str], input: &[u8]) -> Run {
-    let mut child = command(args).spawn().unwrap();
-    let (mut stdin, input) = (child.stdin.take().unwrap(), input.to_vec());
-    // A run that rejects its flags reads nothing.
-    let writer = thread::spawn(move || drop(stdin.write_all(&input)));
-    let output = child.wait_with_output().unwrap();
-    writer.join().unwrap();
-    output.into()
-}
-
-impl From<Output> for Run {
-    fn from(output: Output) -> Self {
-        let lines = |bytes: Vec<u8>| {
-            String::from_utf8(bytes)
-                .unwrap()
-                .lines()
-                .map(str::to_owned)
-                .collect()
-        };
-        Self {
-            code: output.status.code(),
-            out: lines(output.stdout),
-            err: lines(output.stderr),
-        }
-    }
+    Run::of(&mut command(args), input).unwrap()
 }
 
 fn eval(path: &str, requests: &[Value]) -> Run {
@@ -123,16 +61,6 @@ fn with_xi(mut request: Value, xi: [f64; 3]) -> Value {
     request.as_object_mut().unwrap().remove("wi");
     request["xi"] = json!(xi);
     request
-}
-
-/// Returns the names of the files in a folder, sorted.
-fn names(dir: &Path) -> Vec<String> {
-    let entries = fs::read_dir(dir).unwrap();
-    let mut names: Vec<_> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 fn numbers(value: &Value) -> Vec<f64> {

@@ -4,6 +4,5 @@
 mod accuracy;
 mod cases;
 mod chi2;
-mod claims;
 mod cli;
 mod speed;

@@ -1,19 +1,15 @@
-//! Modules that the harness and the renderer share: lights, random numbers, integrals, statistics; tables, plots, pages; files, flags
-//! and errors.
+//! Modules that the harness and the renderer share: lights, random numbers, integrals, statistics; tables, plots, pages; and files,
+//! flags and errors, which are those of [`hairis_program`].
 //!
 //! None of the modules depends on an experiment, a scene or a model of hair.
 
 pub mod appended;
 pub mod columns;
 pub mod direction;
-pub mod error;
-pub mod files;
-pub mod interrupt;
 pub mod light;
 pub mod machine;
 pub mod markup;
 pub mod plot;
-pub mod program;
 pub mod progress;
 pub mod quadrature;
 pub mod report;
@@ -21,3 +17,5 @@ pub mod sequence;
 pub mod shard;
 pub mod stats;
 pub mod table;
+
+pub use hairis_program::{error, files, interrupt, program};

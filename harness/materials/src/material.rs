@@ -13,6 +13,18 @@ use hairis_variants::{Parameters, Registered, Visitor};
 /// Fields of a JSON object, by name.
 type Fields = BTreeMap<String, Json>;
 
+/// Returns the model of a name, with its first sampler.
+///
+/// # Errors
+///
+/// Returns the rest of a sentence that begins with a flag or a field: what names there are, and the one that is none of them.
+pub fn find_model(name: &str) -> Result<ModelId, String> {
+    ModelId::find(name, None).ok_or_else(|| {
+        let names: Vec<&str> = ModelId::defaults_of_names().map(ModelId::name).collect();
+        format!("must be one of {}, got {name:?}", names.join(", "))
+    })
+}
+
 /// Material specification: a model of the registry with parameters that have been checked.
 ///
 /// ```

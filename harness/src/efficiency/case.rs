@@ -14,7 +14,7 @@ use hairis_instruments::sequence::{XiSource, to_unit_f32};
 use hairis_reference::Reference;
 
 /// Model with its parameters, seen from `wo`.
-pub(crate) struct Case {
+pub struct Case {
     pub(super) model: ModelKind,
     pub(super) theta_o_deg: f64,
     /// Samplers of the case, in the order of [`Sampler::ALL`].
@@ -40,7 +40,6 @@ pub(super) struct Draws {
 }
 
 /// Prints the constants of all formulas, which determine every integral of the case.
-#[cfg(test)]
 impl core::fmt::Debug for Case {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let oracles = self.estimators.iter().map(|estimator| &estimator.oracle);
@@ -50,7 +49,8 @@ impl core::fmt::Debug for Case {
 }
 
 impl Case {
-    pub(crate) fn new(model: ModelKind, params: &HairParams, theta_o_deg: f64) -> Self {
+    /// Prepares a model of these parameters, seen from the inclination `theta_o_deg` in degrees.
+    pub fn new(model: ModelKind, params: &HairParams, theta_o_deg: f64) -> Self {
         let wo = fibre_direction(theta_o_deg.to_radians(), PHI_O_DEG.to_radians()).as_vec3();
         // The oracle is prepared with the same rounded direction.
         let (parameters, exact) = (params.desc().map(f64::from), wo.as_dvec3());

@@ -153,7 +153,7 @@ pub(super) fn moments(
 ///
 /// - Source: Hall 1992, On the removal of skewness by transformation, equation (3).
 /// - Domain: 0 if the mean is exactly the reference; infinite if it differs without any spread; NaN if a contribution was NaN.
-pub(crate) fn bias_z(moments: &Moments, reference: Estimate) -> f64 {
+pub fn bias_z(moments: &Moments, reference: Estimate) -> f64 {
     let mean = moments.mean_estimate();
     let difference = mean.value - reference.value;
     if difference == 0.0 {
@@ -176,7 +176,7 @@ pub(crate) fn bias_z(moments: &Moments, reference: Estimate) -> f64 {
 /// Returns true if `samples` of variance `v` and of this skewness suffice for a test of their mean. If rare hits carry a part of the mean,
 /// their number decides, which is `n / skewness^2` whatever the part; if they carry all of it, `n / (1 + V)` decides as well. NaN (black
 /// light, black hair) does not prevent the test.
-pub(crate) fn is_tested(samples: usize, [v, skewness]: [f64; 2]) -> bool {
+pub fn is_tested(samples: usize, [v, skewness]: [f64; 2]) -> bool {
     let n = samples as f64;
     (v.is_nan() || n / (1.0 + v) >= MIN_EFFECTIVE)
         && (skewness.is_nan() || n >= MIN_EFFECTIVE * skewness * skewness)

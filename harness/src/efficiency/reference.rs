@@ -8,9 +8,7 @@ use hairis_instruments::light::{Environment, Light, LightSample, luminance, prod
 use hairis_instruments::quadrature::SphereIntegrator;
 use hairis_instruments::sequence::{Stratified, XiSource};
 use hairis_instruments::stats::{Estimate, Moments};
-#[cfg(test)]
 use std::collections::HashMap;
-#[cfg(test)]
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
 /// Returns `numerator / pdf`, or 0 if the density is 0, because nothing is drawn there and the contribution is 0 too.
@@ -51,11 +49,10 @@ fn second_moment(
     light.integrate(&square, sphere).value.iter().sum()
 }
 
-/// Integrals that were computed before. Tests run the tables a dozen times, and the integrals would take most of their time.
-#[cfg(test)]
+/// Integrals that this process has computed before. Programs need each once, but tests run the tables a dozen times, and the integrals
+/// would take most of their time.
 struct Known<T>(LazyLock<Mutex<HashMap<String, Arc<OnceLock<T>>>>>);
 
-#[cfg(test)]
 impl<T: Copy> Known<T> {
     const fn new() -> Self {
         Self(LazyLock::new(Mutex::default))
@@ -72,15 +69,8 @@ impl<T: Copy> Known<T> {
     }
 }
 
-/// Returns mean and variances by the light's own quadrature.
-#[cfg(not(test))]
-pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
-    integrated(case, light)
-}
-
-/// Returns mean and variances, integrating each case under each light once.
-#[cfg(test)]
-pub(crate) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
+/// Returns mean and variances by the light's own quadrature, integrating each case under each light once.
+pub fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
     static KNOWN: Known<Reference> = Known::new();
     KNOWN.get(&format!("{case:?} {light:?}"), || integrated(case, light))
 }
@@ -106,8 +96,7 @@ fn integrated(case: &Case, light: &dyn Light) -> Reference {
 }
 
 /// Returns V of directions whose density is proportional to the mean of RGB of `S cos theta_i`, by the light's own quadrature.
-#[cfg(test)]
-pub(crate) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
+pub fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
     let hair = |dir| intensity(case.oracle_value(dir));
     let sphere = case.sphere(Sampler::Published);
     let albedo = sphere.integrate_direction(|dir| [hair(dir)]).value[0];
@@ -118,8 +107,7 @@ pub(crate) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
 /// Returns V of one ray of direct light by one-sample MIS, and V of a ray from `n + n` candidates times `n`, by the light's own quadrature.
 /// With h = f / (p + q), of the densities of the sampler and of the light, the estimate from candidates is the mean of `n` values of h
 /// drawn by p plus that of `n` drawn by q.
-#[cfg(test)]
-pub(crate) fn ray_v(case: &Case, light: &dyn Light, sampler: Sampler) -> [f64; 2] {
+pub fn ray_v(case: &Case, light: &dyn Light, sampler: Sampler) -> [f64; 2] {
     let both = |dir: DVec3| case.density(sampler, dir) + light.pdf(dir);
     let sphere = bounded(case, sampler);
     let share = |dir: DVec3| {
@@ -146,7 +134,7 @@ const STRATA: [usize; 2] = [64, 64];
 const PASS: usize = STRATA[0] * STRATA[1];
 
 /// Returns the integral of `y` over the sphere, by stratified passes over directions drawn from a light.
-pub(crate) fn stratified(
+pub fn stratified(
     light: &dyn Light,
     [seed, stream]: [u64; 2],
     passes: usize,
@@ -224,25 +212,17 @@ pub(super) fn of_environment(
 
 /// Integral of `S cos theta_i` and V under constant light, by quadrature.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ExactVariance {
+pub struct ExactVariance {
     /// Integral of the mean of RGB.
-    pub(super) mean: Estimate,
+    pub mean: Estimate,
     /// V of the mean of RGB, and of the luminance of Rec. 709.
-    pub(super) v: [f64; 2],
+    pub v: [f64; 2],
     /// Whether the tolerance of 1e-7 was met.
-    #[cfg(test)]
-    pub(super) converged: bool,
-}
-
-/// Returns V under constant light.
-#[cfg(not(test))]
-pub(super) fn exact_variance(case: &Case, sampler: Sampler) -> ExactVariance {
-    variance(case, sampler)
+    pub converged: bool,
 }
 
 /// Returns V under constant light, integrating each case with each sampler once.
-#[cfg(test)]
-pub(super) fn exact_variance(case: &Case, sampler: Sampler) -> ExactVariance {
+pub fn exact_variance(case: &Case, sampler: Sampler) -> ExactVariance {
     static KNOWN: Known<ExactVariance> = Known::new();
     KNOWN.get(&format!("{case:?} {sampler:?}"), || variance(case, sampler))
 }
@@ -259,7 +239,6 @@ fn variance(case: &Case, sampler: Sampler) -> ExactVariance {
     ExactVariance {
         mean: Estimate::exact(m),
         v: [m_sq / (m * m) - 1.0, y_sq / (y * y) - 1.0],
-        #[cfg(test)]
         converged: r.converged,
     }
 }

@@ -89,7 +89,7 @@ impl Reference {
     }
 
     /// Returns the integral with its standard error.
-    pub(crate) const fn estimate(&self) -> Estimate {
+    pub const fn estimate(&self) -> Estimate {
         Estimate {
             value: self.value,
             standard_error: self.standard_error,
@@ -97,7 +97,7 @@ impl Reference {
     }
 
     /// Returns V and skewness of one independent sample, or NaN for a sampler that is not compared.
-    pub(crate) fn predicted(&self, sampler: Sampler) -> [f64; 2] {
+    pub fn predicted(&self, sampler: Sampler) -> [f64; 2] {
         [&self.v, &self.skewness].map(|each| of_sampler(each, sampler))
     }
 }
@@ -186,7 +186,7 @@ impl Technique {
     }
 
     /// Returns the name of the technique in reports.
-    pub(crate) fn name(self) -> String {
+    pub fn name(self) -> String {
         match self {
             Self::Light => "light only".to_owned(),
             Self::Bsdf(sampler) => format!("{} only", sampler.name()),
@@ -195,7 +195,7 @@ impl Technique {
     }
 
     /// Returns the number of samples that a contribution takes.
-    pub(crate) fn samples_each(self) -> usize {
+    pub fn samples_each(self) -> usize {
         if matches!(self, Self::Mis(_)) { 2 } else { 1 }
     }
 }

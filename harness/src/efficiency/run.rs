@@ -239,7 +239,7 @@ pub(super) fn check(result: &EfficiencyResult) -> Check {
 
 impl Check {
     /// Checks scores, each with its place, against the bound that all of them together keep with probability `1 - FALSE_ALARM`.
-    pub(crate) fn of(scores: &[(f64, String)], untested: usize) -> Self {
+    pub fn of(scores: &[(f64, String)], untested: usize) -> Self {
         let bound = z_bound(sidak(FALSE_ALARM, scores.len()));
         let size = |z: f64| if z.is_nan() { f64::INFINITY } else { z.abs() };
         Self {
@@ -258,6 +258,6 @@ impl Check {
 }
 
 /// Returns the `|z|` of a two-sided p-value.
-pub(crate) fn z_bound(p: f64) -> f64 {
+pub fn z_bound(p: f64) -> f64 {
     SQRT_2 * erfc_inv(p)
 }

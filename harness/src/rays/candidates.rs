@@ -11,7 +11,7 @@ use hairis_instruments::sequence::{Independent, XiSource};
 use wide::f32x8;
 
 /// Eight directions that were drawn from a light, one per lane.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct LightBlock {
     wi: Vec3x8,
     seen: Seen8,
@@ -37,11 +37,12 @@ impl LightBlock {
 pub(super) const PACKETS: usize = MOST / 8;
 
 /// Directions of a light that were drawn beforehand, for several pools of the largest size.
-pub(crate) struct LightBlocks(pub(super) Vec<[LightBlock; PACKETS]>);
+#[derive(Debug)]
+pub struct LightBlocks(pub(super) Vec<[LightBlock; PACKETS]>);
 
 impl LightBlocks {
     /// Draws the directions for so many of the largest pools.
-    pub(crate) fn draw(light: &dyn Light, source: &mut Independent, pools: usize) -> Self {
+    pub fn draw(light: &dyn Light, source: &mut Independent, pools: usize) -> Self {
         Self(
             (0..pools)
                 .map(|_| array::from_fn(|_| LightBlock::draw(light, source)))
@@ -51,15 +52,17 @@ impl LightBlocks {
 }
 
 /// Draws three rows of eight uniform numbers.
-pub(crate) fn numbers(source: &mut Independent) -> [f32x8; 3] {
+pub fn numbers(source: &mut Independent) -> [f32x8; 3] {
     array::from_fn(|_| f32x8::new(array::from_fn(|_| source.next_f32())))
 }
 
 /// Shading point under a light.
-#[derive(Clone, Copy)]
-pub(crate) struct Lit<'a> {
-    pub(crate) scatter: &'a Scatter,
-    pub(crate) light: &'a dyn Light,
+#[derive(Clone, Copy, Debug)]
+pub struct Lit<'a> {
+    /// Sampler at the point.
+    pub scatter: &'a Scatter,
+    /// Light.
+    pub light: &'a dyn Light,
 }
 
 /// Eight candidates of one technique at one hit, one per lane, with everything that a weight needs.

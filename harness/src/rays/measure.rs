@@ -199,19 +199,19 @@ fn mean_of(choice: &Choice) -> f64 {
 
 /// V of one ray without occlusion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Unoccluded<const S: usize> {
+pub struct Unoccluded<const S: usize> {
     /// V by one-sample MIS.
-    pub(crate) mis: Estimate,
+    pub mis: Estimate,
     /// V of a ray chosen from pools of each size.
-    pub(crate) chosen: [Estimate; S],
+    pub chosen: [Estimate; S],
     /// Bias of the mean over the pools of the last size, in standard errors and corrected for skewness; none if there were too few
     /// effective pools for a test.
-    pub(crate) bias: Option<f64>,
+    pub bias: Option<f64>,
 }
 
 /// Measures V of one ray from pools of some sizes, at most [`MOST`]. There are as many of the largest pools as `blocks`. The errors include
 /// that of the mean, `reference`.
-pub(crate) fn unoccluded<const S: usize>(
+pub fn unoccluded<const S: usize>(
     lit: Lit<'_>,
     blocks: &LightBlocks,
     sizes: [u32; S],

@@ -94,7 +94,7 @@ impl OneRay {
 }
 
 /// Returns V of one ray that passes with probability `share`, whatever its direction, from `E[X^2]/share` over the squared mean.
-pub(crate) fn occluded(v: Estimate, share: f64) -> Estimate {
+pub fn occluded(v: Estimate, share: f64) -> Estimate {
     Estimate {
         value: (v.value + 1.0) / share - 1.0,
         standard_error: v.standard_error / share,

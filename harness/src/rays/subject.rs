@@ -35,7 +35,7 @@ impl RaySubject {
     }
 
     /// Returns every sampler of an entry's model, uniform directions first.
-    pub(crate) fn of_model(model: ModelId) -> impl Iterator<Item = Self> {
+    pub fn of_model(model: ModelId) -> impl Iterator<Item = Self> {
         let uniform = Self {
             id: model,
             is_uniform: true,
@@ -50,7 +50,7 @@ impl RaySubject {
     }
 
     /// Returns the entry of the registry, unless directions are uniform.
-    pub(crate) fn own(self) -> Option<ModelId> {
+    pub fn own(self) -> Option<ModelId> {
         (!self.is_uniform).then_some(self.id)
     }
 
@@ -59,7 +59,7 @@ impl RaySubject {
     /// # Errors
     ///
     /// Returns an error if a value is out of its range.
-    pub(crate) fn at(self, values: &Values, hit: Hit) -> Result<Scatter, ParamError> {
+    pub fn at(self, values: &Values, hit: Hit) -> Result<Scatter, ParamError> {
         let material = self.id.material(values)?;
         Ok(Scatter::at(material.prepare(hit), self.is_uniform))
     }

@@ -77,7 +77,7 @@ impl RayTimes {
 
     /// Returns the time of one ray with its standard error, in ns: by one-sample MIS, or from a pool of so many candidates of each
     /// technique. The time is NaN if no such pool is measured.
-    pub(crate) fn ray(&self, candidates_each: Option<u32>) -> Estimate {
+    pub fn ray(&self, candidates_each: Option<u32>) -> Estimate {
         let Some(count) = candidates_each else {
             return Estimate {
                 value: self.mis_ns,
@@ -94,7 +94,7 @@ impl RayTimes {
 }
 
 /// Measures every model and sampler under every light; `progress` is called with the number of those done.
-pub(crate) fn measure(
+pub fn measure(
     subjects: &[RaySubject],
     lights: &[&dyn Light],
     seed: u64,

@@ -8,14 +8,16 @@ use hairis_instruments::stats::sidak;
 const ROUNDING: f64 = 1e-4;
 
 /// Row of figures to check.
-pub(crate) struct Checked<'a> {
+#[derive(Clone, Debug)]
+pub struct Checked<'a> {
     /// Place of the row, in words.
-    pub(crate) place: String,
+    pub place: String,
     /// Name of the row's group. Rows of one group follow each other, and have one mean under the constant light.
-    pub(crate) group: String,
+    pub group: String,
     /// Whether the row is of a sampler under the constant light.
-    pub(crate) is_constant: bool,
-    pub(crate) measured: &'a Measured,
+    pub is_constant: bool,
+    /// Figures of the row.
+    pub measured: &'a Measured,
 }
 
 /// Returns a line for each figure that cannot be right.
@@ -24,7 +26,7 @@ pub(crate) struct Checked<'a> {
 /// - Under the constant light, which every direction sees, the samplers of a group agree on the mean with the first of them. All of their
 ///   scores together stay below a bound that chance alone exceeds with probability [`FALSE_ALARM`].
 /// - The same holds for the means of rays from the largest pools against those of samples, under every light.
-pub(crate) fn failures(rows: &[Checked<'_>]) -> Vec<String> {
+pub fn failures(rows: &[Checked<'_>]) -> Vec<String> {
     let mut failures = Vec::new();
     for row in rows {
         let weight = row.measured.max_weight;

@@ -5,15 +5,19 @@ use crate::rays::{HALF, VISIBLE, occluded};
 use hairis_instruments::columns::Columns;
 use hairis_instruments::stats::Estimate;
 
-/// Estimator of a ray: its name in tables, its name in columns, and the candidates of each technique, if it chooses from candidates.
-pub(crate) struct By {
-    pub(crate) name: &'static str,
-    pub(crate) column: &'static str,
-    pub(crate) candidates_each: Option<u32>,
+/// Estimator of a ray.
+#[derive(Clone, Copy, Debug)]
+pub struct By {
+    /// Name in tables.
+    pub name: &'static str,
+    /// Name in columns.
+    pub column: &'static str,
+    /// Number of candidates of each technique, if it chooses from candidates.
+    pub candidates_each: Option<u32>,
 }
 
 /// Estimators of a ray: one-sample MIS, and choices from pools of [`POOL_SIZES`].
-pub(crate) const RAYS: [By; 1 + POOL_SIZES.len()] = [
+pub const RAYS: [By; 1 + POOL_SIZES.len()] = [
     By {
         name: "MIS",
         column: "mis",
@@ -31,17 +35,18 @@ pub(crate) const RAYS: [By; 1 + POOL_SIZES.len()] = [
     },
 ];
 
-/// Indices in [`RAYS`] of one-sample MIS and of the pools.
-pub(crate) const MIS: usize = 0;
-pub(crate) const POOLS: [usize; POOL_SIZES.len()] = [1, 2];
+/// Index in [`RAYS`] of one-sample MIS.
+pub const MIS: usize = 0;
+/// Indices in [`RAYS`] of the pools.
+pub const POOLS: [usize; POOL_SIZES.len()] = [1, 2];
 
 /// Returns V of one ray without occlusion, by index in [`RAYS`], or NaN if it was not measured.
-pub(crate) fn ray_v(measured: &Measured, by: usize) -> Estimate {
+pub fn ray_v(measured: &Measured, by: usize) -> Estimate {
     measured.rays.map_or(Estimate::UNKNOWN, |rays| rays[by])
 }
 
 /// Returns V with half of the directions visible.
-pub(crate) fn half_visible(measured: &Measured, by: usize) -> Estimate {
+pub fn half_visible(measured: &Measured, by: usize) -> Estimate {
     occluded(ray_v(measured, by), HALF)
 }
 
@@ -62,7 +67,7 @@ fn rays(mut columns: Columns, rows: &[&Measured]) -> Columns {
 }
 
 /// Adds the columns of figures, after those that identify a row.
-pub(crate) fn figures_of(columns: Columns, rows: &[&Measured]) -> Columns {
+pub fn figures_of(columns: Columns, rows: &[&Measured]) -> Columns {
     let figures = |of: fn(&Measured) -> f64| rows.iter().map(move |row| of(row));
     let columns = columns
         .estimate("mean", rows.iter().map(|row| row.figures.mean))

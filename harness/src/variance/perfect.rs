@@ -19,7 +19,7 @@ use hairis_instruments::stats::Estimate;
 use wide::f64x8;
 
 /// Sampler that the directions come from: the one whose weights vary least, which is the last of the list.
-pub(crate) const SOURCE: Sampler = Sampler::ALL[Sampler::ALL.len() - 1];
+pub const SOURCE: Sampler = Sampler::ALL[Sampler::ALL.len() - 1];
 
 /// Sums of the weight that counts for F, and of `m w r`, `m w r^2` and `m w r ln r`; the largest number is an `r`.
 pub(super) type PerfectTally = Sums<4>;

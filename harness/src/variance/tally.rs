@@ -27,14 +27,14 @@ pub(super) type Tally = Sums<3>;
 
 /// Figures of a sampler under a light.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct Figures {
+pub struct Figures {
     /// Mean `E_p[y]`, which is the integral of `L S cos theta_i`.
-    pub(crate) mean: Estimate,
+    pub mean: Estimate,
     /// Relative variance of one sample, `E_p[y^2] / E_p[y]^2 - 1`.
-    pub(crate) v: Estimate,
+    pub v: Estimate,
     /// Kullback-Leibler divergence of the sampler's density from the normalised integrand, in nats:
     /// `E_p[w ln w]` with `w = y / E_p[y]`.
-    pub(crate) kl: Estimate,
+    pub kl: Estimate,
 }
 
 impl<const N: usize> Default for Sums<N> {

@@ -6,6 +6,7 @@ mod radiance;
 
 use super::environment::INFINITE_PIXEL;
 use super::{Environment, PixelRepairs, rounded};
+use crate::error::Error;
 use core::fmt;
 use glam::{DMat3, DVec3};
 use std::fs::File;
@@ -44,6 +45,12 @@ impl fmt::Display for LightError {
 }
 
 impl core::error::Error for LightError {}
+
+impl From<LightError> for Error {
+    fn from(source: LightError) -> Self {
+        Self::Environment(source.to_string())
+    }
+}
 
 impl Environment {
     /// Reads an environment map as [`load_layer`](Self::load_layer) does, without naming a layer.

@@ -115,7 +115,7 @@ pub(super) fn choices(flags: &Looks, place: &Place) -> Result<Vec<Choice>, Error
 
 /// Reads an environment map, and logs what is odd about it.
 pub(crate) fn environment(path: &Path, layer: Option<&str>) -> Result<Environment, Error> {
-    let map = Environment::load_layer(path, layer).map_err(Error::Environment)?;
+    let map = Environment::load_layer(path, layer)?;
     for note in map.notes() {
         say(&note);
     }
