@@ -55,17 +55,3 @@ pub fn uniform_direction(xi: &mut Independent) -> Vec3 {
     let phi = TAU * xi.next_f64();
     direction(sin_theta, (1.0 - sin_theta * sin_theta).sqrt(), phi)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn directions_are_unit() {
-        let mut xi = Independent::new(3, 1);
-        for _ in 0..1_000 {
-            let length = uniform_direction(&mut xi).length();
-            assert!((length - 1.0).abs() < 3e-7, "length {length}");
-        }
-    }
-}

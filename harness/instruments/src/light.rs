@@ -6,19 +6,18 @@
 
 mod constant;
 mod environment;
+pub mod inversion;
 mod load;
 mod rectangle;
 mod sky;
 mod smooth;
 mod sun;
-#[cfg(test)]
-mod tests;
 
 pub use constant::Constant;
 pub use environment::{Environment, PixelRepairs};
-pub use load::LightError;
+pub use load::{LightError, Primaries};
 pub use rectangle::Rectangle;
-pub use sky::Sky;
+pub use sky::{Sky, xyy_to_rgb};
 pub use smooth::Smooth;
 pub use sun::Sun;
 
@@ -137,8 +136,9 @@ fn about(axis: DVec3, cosine: f64, sine_sq: f64, phi: f64) -> DVec3 {
     cosine * axis + r * cos_phi * e1 + r * sin_phi * e2
 }
 
-/// Returns two unit vectors that complete `axis` to the frame.
-fn tangents(axis: DVec3) -> [DVec3; 2] {
+/// Returns two unit vectors that complete the unit vector `axis` to a right-handed frame (Duff et al. 2017).
+#[must_use]
+pub fn tangents(axis: DVec3) -> [DVec3; 2] {
     let sign = 1.0_f64.copysign(axis.z);
     let a = -1.0 / (sign + axis.z);
     let b = axis.x * axis.y * a;

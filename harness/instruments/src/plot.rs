@@ -16,7 +16,7 @@ mod png;
 mod polar;
 mod sphere;
 
-pub use axis::Axis;
+pub use axis::{Axis, Fitted, Tick};
 pub use bar::bars;
 pub use frame::Bar;
 pub use line::{Series, lines};
@@ -24,6 +24,3 @@ pub use line::{Series, lines};
 pub use png::png;
 pub use polar::{PolarPanel, polar};
 pub use sphere::{ScatterPanel, SphereGrid, heat_map, scatter_maps};
-
-#[cfg(test)]
-mod tests;

@@ -16,7 +16,7 @@ const MOST_LINKS: usize = 40;
 /// Suffix of the name of a file that is not whole yet.
 const UNFINISHED: &str = ".new";
 /// Number of bytes that file systems allow in a name.
-const LONGEST_NAME: usize = 255;
+pub const LONGEST_NAME: usize = 255;
 
 /// Writes a file under a temporary name and renames it once it is whole.
 ///

@@ -1,8 +1,8 @@
 //! Latitude-longitude environment maps with importance sampling that follows the map exactly.
 
-mod inversion;
 mod places;
 
+use super::inversion::{cell, guide, search};
 use super::{Light, LightSample, Seen8, luminance, rounded};
 use crate::quadrature::{GaussLegendre, Integral, SphereIntegrator};
 use crate::sequence::mix;
@@ -11,7 +11,6 @@ use core::f64::consts::PI;
 use glam::DVec3;
 use hairis::Vec3x8;
 use hairis::simd::Level;
-use inversion::{cell, guide, search};
 use places::{Places, in_doubt};
 use serde::Serialize;
 use wide::f32x8;
@@ -63,7 +62,7 @@ pub struct Environment {
     /// Cumulative weights over rows, and within each row over its columns; both begin with the first element's weight, not with 0.
     rows: Vec<f64>,
     columns: Vec<f64>,
-    /// Starting points of the searches in the cumulative weights: see [`guide`](inversion::guide).
+    /// Starting points of the searches in the cumulative weights: see [`guide`](super::inversion::guide).
     row_guide: Vec<u32>,
     column_guide: Vec<u32>,
     repairs: PixelRepairs,

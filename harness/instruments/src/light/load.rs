@@ -4,6 +4,8 @@ mod openexr;
 mod primaries;
 mod radiance;
 
+pub use primaries::Primaries;
+
 use super::environment::INFINITE_PIXEL;
 use super::{Environment, PixelRepairs, rounded};
 use crate::error::Error;

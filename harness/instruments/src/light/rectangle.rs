@@ -113,25 +113,3 @@ impl Light for Rectangle {
         )
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn corners_come_from_the_corners_of_the_square() {
-        let r = Rectangle;
-        let last = 1.0 - f64::EPSILON / 2.0;
-        for (xi, want) in [
-            ([0.0, 0.0], [-2.0, -0.5]),
-            ([last, last], [2.0, 0.5]),
-            ([0.5, 0.5], [0.0, 0.0]),
-        ] {
-            let got = r.point(xi);
-            assert!(
-                (got[0] - want[0]).abs() < 1e-12 && (got[1] - want[1]).abs() < 1e-12,
-                "{xi:?}: {got:?}"
-            );
-        }
-    }
-}

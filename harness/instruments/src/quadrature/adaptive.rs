@@ -366,6 +366,3 @@ fn total(panels: &Panels, done: &Panels) -> Sums {
     }
     sums
 }
-
-#[cfg(test)]
-mod tests;

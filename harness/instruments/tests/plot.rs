@@ -1,7 +1,14 @@
 //! Tests that charts of odd data are valid charts.
 
-use super::*;
-use crate::markup::well_formed;
+mod axis;
+#[cfg(feature = "png")]
+mod png;
+
+use hairis_instruments::markup::well_formed;
+use hairis_instruments::plot::{
+    Axis, Bar, PolarPanel, ScatterPanel, Series, SphereGrid, bars, heat_map, lines, polar,
+    scatter_maps,
+};
 
 const ODD: [f64; 9] = [
     f64::NAN,

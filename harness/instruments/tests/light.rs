@@ -2,15 +2,23 @@
 
 mod environment;
 mod files;
+mod inversion;
+mod load;
 mod maps;
 mod radiance;
+mod rectangle;
+mod sky;
 
-use super::*;
-use crate::quadrature::Tolerance;
-use crate::sequence::{Independent, XiSource, stream_id};
-use crate::stats::{Moments, sidak};
 use core::f64::consts::PI;
+use glam::DVec3;
 use hairis_conformance::statistics::chi_square;
+use hairis_instruments::light::{
+    Constant, Environment, Light, LightError, PixelRepairs, Rectangle, Sky, Smooth, Sun, luminance,
+    rounded, tangents,
+};
+use hairis_instruments::quadrature::{SphereIntegrator, Tolerance};
+use hairis_instruments::sequence::{Independent, XiSource, stream_id};
+use hairis_instruments::stats::{Moments, sidak};
 
 /// Returns a map of 16 x 8 texels with a black row, a black column and values from 1 to 500, so that every branch of the sampling is
 /// taken.

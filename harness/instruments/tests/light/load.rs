@@ -1,0 +1,3 @@
+//! Tests of `load`.
+
+mod primaries;

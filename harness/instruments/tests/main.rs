@@ -1,0 +1,18 @@
+//! Tests of the instruments: one binary, a module a subject.
+
+mod appended;
+mod columns;
+mod direction;
+mod files;
+mod interrupt;
+mod light;
+mod machine;
+mod markup;
+mod plot;
+mod program;
+mod quadrature;
+mod report;
+mod sequence;
+mod shard;
+mod stats;
+mod table;

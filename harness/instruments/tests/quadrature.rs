@@ -1,0 +1,5 @@
+//! Tests of `quadrature`.
+
+mod adaptive;
+mod legendre;
+mod sphere;

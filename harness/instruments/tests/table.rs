@@ -1,0 +1,75 @@
+//! Tests of `table`.
+
+mod number;
+
+use hairis_instruments::markup;
+use hairis_instruments::table::Table;
+
+const WIDE: Option<u16> = Some(u16::MAX);
+
+fn example() -> Table {
+    let mut table = Table::new("Speed <of> \"hair\"")
+        .texts(["kernel"])
+        .numbers(["time (ns)", "ratio"]);
+    table.push(["eval & sample", "8.31 ± 0.02", "13.4×"]);
+    table.push(["short"]);
+    table.push(["long", "1", "2", "dropped"]);
+    table
+}
+
+#[test]
+fn the_terminal_and_the_report_show_the_same_cells() {
+    let (plain, html) = (example().to_text(WIDE), example().to_html());
+    for cell in ["8.31 ± 0.02", "13.4×", "time (ns)", "short"] {
+        assert!(
+            plain.contains(cell) && html.contains(cell),
+            "{cell} in {plain} and {html}"
+        );
+    }
+    assert!(
+        !plain.contains("dropped") && !html.contains("dropped"),
+        "a cell beyond the columns"
+    );
+    assert_eq!(
+        html.matches("<t").count() - html.matches("<tr").count(),
+        3 + 3 + 9,
+        "every row is full: {html}"
+    );
+}
+
+#[test]
+fn html_is_escaped_and_nests() {
+    let html = example().note("</table>").to_html();
+    markup::well_formed(&html).expect("the table nests");
+    assert!(
+        html.contains("Speed &lt;of&gt; &quot;hair&quot;") && html.contains("eval &amp; sample"),
+        "{html}"
+    );
+}
+
+#[test]
+fn columns_line_up_and_lines_keep_to_the_width() {
+    let plain = example().to_text(WIDE);
+    let ends: Vec<usize> = plain
+        .lines()
+        .filter(|l| l.contains("13.4×") || l.contains("ratio"))
+        .map(|l| l.chars().count())
+        .collect();
+    assert_eq!(ends.len(), 2, "{plain}");
+    assert_eq!(
+        ends[0], ends[1],
+        "numbers end where their header does: {plain}"
+    );
+    let mut wide = Table::new("t").texts(["a", "b"]);
+    wide.push(["word ".repeat(30), "other ".repeat(30)]);
+    let text = wide.to_text(Some(60));
+    assert!(text.lines().all(|l| l.chars().count() <= 60), "{text}");
+    assert!(
+        wide.to_text(WIDE).lines().any(|l| l.chars().count() > 200),
+        "nothing is broken off a terminal"
+    );
+    assert!(
+        !Table::new("a\u{1b}[31m").to_text(None).contains('\u{1b}'),
+        "no escape sequences get through"
+    );
+}
