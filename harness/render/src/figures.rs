@@ -1,17 +1,15 @@
 //! Subcommand `hairis-render figures`, which compares samplers side by side, as pictures and as numbers, on one page.
 
-mod csv;
-mod map;
-mod measure;
-mod models;
-pub(crate) mod names;
-mod page;
-mod panel;
+pub mod csv;
+pub mod map;
+pub mod measure;
+pub mod models;
+pub mod names;
+pub mod page;
+pub mod panel;
 mod rates;
-mod store;
-#[cfg(test)]
-mod tests;
-mod verdict;
+pub mod store;
+pub mod verdict;
 
 use crate::args::Figures;
 use crate::cmd::environment;
@@ -30,7 +28,7 @@ use std::path::Path;
 use store::Store;
 
 /// Scenes that are compared if the flags name none. Maps of the caller take the place of the light of [`Name::Env`].
-const SCENES: [Name; 7] = [
+pub const SCENES: [Name; 7] = [
     Name::Area,
     Name::AreaSoft,
     Name::AreaHead,

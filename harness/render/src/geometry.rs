@@ -9,6 +9,5 @@ mod strands;
 pub use bounds::Bounds;
 pub use groom::{Groom, HEAD, Kind};
 pub use mesh::Mesh;
-pub use spline::Flattening;
-pub(crate) use spline::{Basis, Spline};
+pub use spline::{Basis, Flattening, Spline};
 pub use strands::{Builder, GeometryError, Strands};

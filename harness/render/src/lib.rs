@@ -15,7 +15,7 @@
 pub mod args;
 pub mod camera;
 pub mod cmd;
-mod figures;
+pub mod figures;
 pub mod film;
 pub mod fit;
 pub mod formats;
@@ -32,7 +32,7 @@ pub mod numbers;
 pub mod part;
 pub mod picture;
 pub mod protocol;
-mod saver;
+pub mod saver;
 pub mod scalp;
 pub mod scene;
 pub mod scenes;

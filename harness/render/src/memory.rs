@@ -20,7 +20,12 @@ pub fn check(segments: u64, pixels: u64) -> Result<(), Error> {
     })
 }
 
-fn check_within(segments: u64, pixels: u64, available: u64) -> Result<(), Error> {
+/// Rejects a scene that does not fit in `available` bytes.
+///
+/// # Errors
+///
+/// Returns [`Error::Usage`] with the memory that the scene needs and the memory that is left.
+pub fn check_within(segments: u64, pixels: u64, available: u64) -> Result<(), Error> {
     let need = segments
         .saturating_mul(PER_SEGMENT)
         .saturating_add(pixels.saturating_mul(PER_PIXEL));
@@ -54,8 +59,9 @@ fn available() -> Option<u64> {
     .min()
 }
 
-/// Parses the line `MemAvailable: N kB`.
-fn of_machine(meminfo: &str) -> Option<u64> {
+/// Parses the bytes that are left from the text of `/proc/meminfo`, whose line is `MemAvailable: N kB`.
+#[must_use]
+pub fn of_machine(meminfo: &str) -> Option<u64> {
     let line = meminfo
         .lines()
         .find_map(|line| line.strip_prefix("MemAvailable:"))?;
@@ -65,38 +71,4 @@ fn of_machine(meminfo: &str) -> Option<u64> {
         .parse::<u64>()
         .ok()?
         .checked_mul(1024)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_does_not_fit_is_refused_with_both_sizes() {
-        assert!(
-            check_within(1_000_000, 1_000_000, 500_000_000).is_ok(),
-            "half a gigabyte holds it"
-        );
-        let problem = check_within(1_000_000, 1_000_000, 400_000_000)
-            .expect_err("more than there is")
-            .to_string();
-        assert!(
-            problem.contains("0.4 GB") && problem.contains("1000000 segments"),
-            "{problem}"
-        );
-        assert!(
-            check_within(u64::MAX, u64::MAX, u64::MAX - 1).is_err(),
-            "the sum saturates"
-        );
-    }
-
-    #[test]
-    fn the_memory_of_the_machine_is_read() {
-        assert_eq!(
-            of_machine("MemTotal: 9 kB\nMemAvailable:       2 kB\n"),
-            Some(2048)
-        );
-        assert_eq!(of_machine("MemAvailable: many\n"), None);
-        assert_eq!(of_machine(""), None);
-    }
 }

@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 /// Beginning of the first line of a file, without the number of the format.
 const FORMAT: &str = "hairis-render part ";
 /// First line of a file, with the number of the format.
-const MAGIC: &str = "hairis-render part 4";
+pub const MAGIC: &str = "hairis-render part 4";
 
 /// Part of a picture: the sums of tiles, and the run to which they belong.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,7 +72,8 @@ impl Part {
     }
 
     /// Returns the bytes of the file before its tiles.
-    fn header(&self) -> Vec<u8> {
+    #[must_use]
+    pub fn header(&self) -> Vec<u8> {
         let Crop {
             x,
             y,
@@ -263,7 +264,8 @@ impl Part {
 }
 
 /// Returns the identity of the build that the sums depend on: the build, and whether the CPU fuses multiply and add.
-pub(crate) fn build() -> String {
+#[must_use]
+pub fn build() -> String {
     let machine = machine!();
     // A commit does not distinguish builds with changes, but a digest of the program does.
     let changes = if machine.dirty == Some(false) {
@@ -300,7 +302,8 @@ fn problem(path: &Path) -> String {
 }
 
 /// Encodes a tile as a record of the file.
-fn record(tile: &Tile) -> Vec<u8> {
+#[must_use]
+pub fn record(tile: &Tile) -> Vec<u8> {
     let Tile {
         place,
         sums,
@@ -347,6 +350,3 @@ fn record(tile: &Tile) -> Vec<u8> {
 fn is_sealed(bytes: &[u8], check: u64) -> bool {
     digest(bytes) == check
 }
-
-#[cfg(test)]
-mod tests;

@@ -4,11 +4,9 @@ mod clock;
 mod cut_off;
 mod gather;
 mod path;
-mod profile;
+pub mod profile;
 mod recorded;
-mod resampled;
-#[cfg(test)]
-mod tests;
+pub mod resampled;
 mod wave;
 
 pub use clock::seconds_of_thread;
@@ -169,12 +167,28 @@ pub fn render_until(
     progress: &(dyn Fn(f64) + Sync),
     stop: &Stop<'_>,
 ) {
+    let tables = tables(scene, settings);
+    render_by_tables(scene, &tables, settings, film, samples, progress, stop);
+}
+
+/// Returns the tables of the sky that a picture reads. They are not drawn yet.
+#[must_use]
+pub fn tables<'a>(scene: &'a Scene, settings: &Settings) -> Tables<'a> {
+    let length = resampled::length(settings.integrator);
+    Tables::new(&scene.sky, settings.seed, length)
+}
+
+/// Adds samples as [`render_until`] does, from tables of the sky that the caller has made.
+pub fn render_by_tables(
+    scene: &Scene,
+    tables: &Tables<'_>,
+    settings: &Settings,
+    film: &mut Film,
+    samples: u32,
+    progress: &(dyn Fn(f64) + Sync),
+    stop: &Stop<'_>,
+) {
     let total = film.tiles.len().max(1);
-    let tables = Tables::new(
-        &scene.sky,
-        settings.seed,
-        resampled::length(settings.integrator),
-    );
     let todo: Vec<&mut Tile> = film
         .tiles
         .iter_mut()
@@ -188,8 +202,8 @@ pub fn render_until(
             profile::start();
         }
         match settings.integrator {
-            Integrator::Gather => gather::tile(scene, &tables, settings, tile, samples),
-            Integrator::Direct | Integrator::Path => paths(scene, &tables, settings, tile, samples),
+            Integrator::Gather => gather::tile(scene, tables, settings, tile, samples),
+            Integrator::Direct | Integrator::Path => paths(scene, tables, settings, tile, samples),
         }
         tile.seconds += seconds_of_thread() - start;
         if settings.profile

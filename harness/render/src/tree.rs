@@ -10,8 +10,6 @@ mod build;
 mod node;
 mod ray;
 mod split;
-#[cfg(test)]
-mod tests;
 mod traverse;
 mod triangles;
 
@@ -24,7 +22,7 @@ use block::{Block, Leaf};
 use core::fmt;
 use hairis::simd::Level;
 use node::Node;
-use traverse::{Any, Closest};
+use traverse::{All, Any, Closest};
 
 /// Largest size of a scene, relative to the radius of its thinnest strand. Distances are computed to about 2^-22 of the
 /// scene, which is then below 3 % of a radius.
@@ -150,6 +148,16 @@ impl Tree {
     #[must_use]
     pub fn occluded(&self, ray: &Ray) -> bool {
         self.0.occluded(ray)
+    }
+
+    /// Returns every segment that the ray meets, at any distance and of any strand, from a test of all blocks without boxes. Searches
+    /// are checked against it.
+    #[must_use]
+    pub fn every_hit(&self, ray: &Ray) -> Vec<Hit> {
+        self.0.level.run(All {
+            boxes: &self.0,
+            ray,
+        })
     }
 
     /// Finds the nearest segment as [`closest`](Self::closest) does, and adds the nodes and blocks that it visits to `visits`.

@@ -1,5 +1,7 @@
 //! Materials recovered from pictures.
 
+mod variables;
+
 use crate::support::{film, scene};
 use glam::Vec3;
 use hairis_instruments::light::Constant;

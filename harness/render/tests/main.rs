@@ -1,13 +1,30 @@
-//! Integration tests of the renderer.
+//! Tests of the renderer: one binary, a module a subject.
 
 mod agreement;
 mod bits;
+mod camera;
 mod cli;
+mod figures;
+mod film;
 mod fit;
+mod formats;
 mod furnace;
+mod geometry;
 mod groom;
+mod hair;
 mod heads;
 mod import;
+mod layers;
+mod lights;
+mod memory;
+mod numbers;
+mod part;
+mod picture;
+mod protocol;
 mod rays;
+mod saver;
+mod scene;
 mod segments;
 mod support;
+mod transport;
+mod tree;

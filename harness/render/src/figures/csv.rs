@@ -82,19 +82,24 @@ pub(super) fn write(
 
 /// Columns that identify a figure.
 #[derive(Clone, Debug)]
-struct Start {
-    scene: String,
-    light: String,
-    hair: String,
+pub struct Start {
+    /// Title of the scene.
+    pub scene: String,
+    /// Light that is estimated.
+    pub light: String,
+    /// Name of the hair.
+    pub hair: String,
     /// Name of the sampler, or of the model.
-    sampler: &'static str,
-    protocol: &'static str,
+    pub sampler: &'static str,
+    /// What samplers have in common: the count of samples, or the time.
+    pub protocol: &'static str,
     /// Samples per pixel, if the figure belongs to one count of samples.
-    samples: Option<u32>,
+    pub samples: Option<u32>,
 }
 
 /// Row of the table: one figure with its standard error.
-struct Row {
+#[derive(Clone, Debug)]
+pub struct Row {
     start: Start,
     figure: String,
     estimate: Estimate,
@@ -102,7 +107,9 @@ struct Row {
 }
 
 impl Start {
-    fn row(&self, figure: &str, estimate: Estimate, is_below: bool) -> Row {
+    /// Returns the row of a figure, and marks it if an error is below the reference.
+    #[must_use]
+    pub fn row(&self, figure: &str, estimate: Estimate, is_below: bool) -> Row {
         Row {
             start: self.clone(),
             figure: figure.to_owned(),
@@ -113,7 +120,8 @@ impl Start {
 }
 
 /// Returns the rows as columns of a CSV file.
-fn columns(rows: &[Row]) -> Columns {
+#[must_use]
+pub fn columns(rows: &[Row]) -> Columns {
     let text = |of: fn(&Start) -> String| rows.iter().map(move |row| of(&row.start));
     Columns::default()
         .text("scene", text(|start| start.scene.clone()))
@@ -250,41 +258,4 @@ fn figures(start: &Start, runs: &Runs, (name_of_best, best): (&str, &Runs), rows
 /// Rounds a number to five significant digits.
 fn digits(value: f64) -> f64 {
     format!("{value:.4e}").parse().unwrap_or(value)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_names_of_the_columns_come_first() {
-        let start = Start {
-            scene: "env (a, b.exr)".to_owned(),
-            light: "direct at shading points".to_owned(),
-            hair: "glossy".to_owned(),
-            sampler: "uniform",
-            protocol: "equal samples",
-            samples: Some(16),
-        };
-        let estimate = Estimate {
-            value: 0.123_456_7,
-            standard_error: f64::NAN,
-        };
-        let rows = [
-            start.row("MSE", estimate, true),
-            Start {
-                samples: None,
-                ..start
-            }
-            .row("slope", Estimate::exact(1234.567), false),
-        ];
-        let mut bytes = Vec::new();
-        columns(&rows).write_csv(&mut bytes).expect("written");
-        let want = "\
-scene,light,hair,sampler,protocol,samples,figure,value,standard_error,below_reference
-\"env (a, b.exr)\",direct at shading points,glossy,uniform,equal samples,16,MSE,0.12346,,yes
-\"env (a, b.exr)\",direct at shading points,glossy,uniform,equal samples,,slope,1234.6,0.0,
-";
-        assert_eq!(String::from_utf8(bytes).expect("text"), want);
-    }
 }

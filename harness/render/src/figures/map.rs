@@ -9,16 +9,20 @@ const DECADES: f64 = 4.0;
 const COVERED: f64 = 0.995;
 
 /// Map of errors: its scale, and the text that explains it.
-pub(super) struct Map {
-    pub(super) name: &'static str,
-    pub(super) remarks: &'static [&'static str],
+#[derive(Clone, Debug)]
+pub struct Map {
+    /// Name of the error.
+    pub name: &'static str,
+    /// Lines that explain the colours.
+    pub remarks: &'static [&'static str],
     most: f64,
     is_signed: bool,
 }
 
 impl Map {
     /// Creates a map of signed errors: blue below 0, red above, white at 0, with full colours at `most`.
-    pub(super) fn signed(name: &'static str, most: f64, remarks: &'static [&'static str]) -> Self {
+    #[must_use]
+    pub fn signed(name: &'static str, most: f64, remarks: &'static [&'static str]) -> Self {
         Self {
             name,
             remarks,
@@ -28,7 +32,8 @@ impl Map {
     }
 
     /// Creates a map of squared errors on a logarithmic scale, which is yellow at `most`.
-    pub(super) fn squared(name: &'static str, most: f64, remarks: &'static [&'static str]) -> Self {
+    #[must_use]
+    pub fn squared(name: &'static str, most: f64, remarks: &'static [&'static str]) -> Self {
         Self {
             name,
             remarks,
@@ -80,14 +85,16 @@ impl Map {
     }
 
     /// Draws errors as colours, row by row.
-    pub(super) fn image(&self, errors: &[f64], [width, height]: [u32; 2]) -> RgbImage {
+    #[must_use]
+    pub fn image(&self, errors: &[f64], [width, height]: [u32; 2]) -> RgbImage {
         RgbImage::from_fn(width, height, |x, y| {
             self.color(self.place(errors[(y * width + x) as usize]))
         })
     }
 
     /// Draws the colours of the scale, from its lower end to its upper end.
-    pub(super) fn legend(&self, width: u32) -> RgbImage {
+    #[must_use]
+    pub fn legend(&self, width: u32) -> RgbImage {
         RgbImage::from_fn(width, 1, |x, _| {
             let share = f64::from(x) / f64::from(width.max(2) - 1);
             self.color(if self.is_signed {
@@ -99,7 +106,8 @@ impl Map {
     }
 
     /// Returns the numbers below the legend, each as share of its width, anchor of the text, and text.
-    pub(super) fn ticks(&self) -> [(f64, &'static str, String); 3] {
+    #[must_use]
+    pub fn ticks(&self) -> [(f64, &'static str, String); 3] {
         let most = self.most;
         let values = if self.is_signed {
             [-most, 0.0, most]
@@ -116,7 +124,7 @@ impl Map {
 }
 
 /// Returns the upper end of a scale that covers all but a few of the nonzero values: 1, 2 or 5 times a power of ten.
-pub(super) fn scale<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
+pub fn scale<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
     let mut values: Vec<f64> = values
         .map(|value| value.abs())
         .filter(|value| *value > 0.0)
@@ -132,62 +140,4 @@ pub(super) fn scale<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
         .find(|factor| factor * power >= covered)
         .unwrap_or(10.0);
     factor * power
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn errors_have_a_sign() {
-        let image = Map::signed("bias", 0.5, &[]).image(&[-0.5, 0.0, 0.5, 9.0], [4, 1]);
-        assert_eq!(image.get_pixel(1, 0).0, [255; 3]);
-        assert!(image.get_pixel(0, 0).0[2] > image.get_pixel(0, 0).0[0]);
-        assert!(image.get_pixel(2, 0).0[0] > image.get_pixel(2, 0).0[2]);
-        assert_eq!(
-            image.get_pixel(2, 0),
-            image.get_pixel(3, 0),
-            "the end of the scale"
-        );
-    }
-
-    #[test]
-    fn squares_are_told_apart_over_four_decades() {
-        let map = Map::squared("noise", 2.0, &[]);
-        let image = map.image(&[0.0, 2e-4, 2e-3, 2e-2, 0.2, 2.0, 9.0], [7, 1]);
-        let light = |x: u32| {
-            image
-                .get_pixel(x, 0)
-                .0
-                .iter()
-                .map(|byte| u32::from(*byte))
-                .sum::<u32>()
-        };
-        assert!(
-            (1..5).all(|x| light(x) < light(x + 1)),
-            "lighter for larger errors"
-        );
-        assert_eq!(
-            [light(0), light(6)],
-            [light(1), light(5)],
-            "the ends of the scale"
-        );
-        assert_eq!(map.legend(5).get_pixel(4, 0), image.get_pixel(5, 0));
-        assert_eq!(
-            map.ticks().map(|(_, _, text)| text),
-            ["0.0002", "0.02", "2"]
-        );
-    }
-
-    #[test]
-    fn scales_are_round_and_leave_out_a_few() {
-        let mut values = vec![0.3; 1000];
-        values.extend([-7.0, 0.0, 1e9]);
-        assert_eq!(scale(values.iter()), 0.5);
-        assert!(
-            (scale([0.7, 0.7].iter()) - 1.0).abs() < 1e-12
-                && (scale([-2e-3].iter()) - 2e-3).abs() < 1e-12
-        );
-        assert_eq!(scale([].iter()), 1.0);
-    }
 }

@@ -33,35 +33,39 @@ fn samplers(hair: &Choice) -> Vec<&'static str> {
 }
 
 /// Returns the hair of a scene if the flags name none.
-pub(super) fn preset(name: Name) -> Result<Choice, Error> {
+///
+/// # Errors
+///
+/// Returns the errors of [`Choice::find`]; the hair of every scene is listed.
+pub fn preset(name: Name) -> Result<Choice, Error> {
     let preset = name.defaults().preset;
     Choice::find(MODEL, MATCHED, preset)
 }
 
 /// Amount of rendering: scenes, samples, repetitions.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Plan {
+pub struct Plan {
     /// Width and height of pictures in pixels.
-    pub(super) side: u32,
+    pub side: u32,
     /// Count of strands of hair.
-    pub(super) strands: usize,
+    pub strands: usize,
     /// Counts of samples per pixel, for shading points and for paths.
-    pub(super) samples: [&'static [u32]; 2],
+    pub samples: [&'static [u32]; 2],
     /// Samples per pixel of each half of the reference, for shading points and for paths.
-    pub(super) reference: [u32; 2],
+    pub reference: [u32; 2],
     /// Count of pictures from which each error is estimated.
-    pub(super) runs: u32,
+    pub runs: u32,
     /// Integrator in place of the scenes' own, if the flags name one.
-    pub(super) integrator: Option<Integrator>,
+    pub integrator: Option<Integrator>,
     /// Source of the samplers' uniform numbers. References are always rendered with Sobol' points.
-    pub(super) sequence: Sequence,
+    pub sequence: Sequence,
     /// Method that draws directions towards rectangular lights.
-    pub(super) rectangle_sampling: RectangleSampling,
+    pub rectangle_sampling: RectangleSampling,
 }
 
 impl Plan {
     /// Settings for a first look, with small pictures and few samples.
-    pub(super) const QUICK: Self = Self {
+    pub const QUICK: Self = Self {
         side: 96,
         strands: 8_000,
         samples: [&[4, 16, 64], &[4, 16]],
@@ -73,7 +77,7 @@ impl Plan {
     };
     /// Settings of the published figures: an hour on two idle cores. A reference has as many samples as 32 of the pictures with the
     /// most, so that it has about 3% of their variance.
-    pub(super) const FULL: Self = Self {
+    pub const FULL: Self = Self {
         side: 192,
         strands: 30_000,
         samples: [&[4, 16, 64, 256, 1024], &[4, 16, 64]],
@@ -109,7 +113,11 @@ impl Plan {
     }
 
     /// Rejects a scene with hair in which paths do not converge.
-    pub(super) fn check(&self, name: Name, hair: &Choice) -> Result<(), Error> {
+    ///
+    /// # Errors
+    ///
+    /// Returns a usage error that names the scene, its hair and the flags that help.
+    pub fn check(&self, name: Name, hair: &Choice) -> Result<(), Error> {
         let settings = self.settings(name, 1);
         let remedy = format!(
             "leave out scene {}, or use --integrator gather",
@@ -126,26 +134,26 @@ impl Plan {
 
 /// Measurements of one sampler on a scene.
 #[derive(Debug)]
-pub(super) struct BySampler {
+pub struct BySampler {
     /// Name of the sampler.
-    pub(super) name: &'static str,
+    pub name: &'static str,
     /// Renders by ascending count of samples.
-    pub(super) runs: Vec<Runs>,
+    pub runs: Vec<Runs>,
     /// Renders that take as long as those of the quickest sampler, at the count of samples that pictures show.
-    pub(super) equal_time: Runs,
+    pub equal_time: Runs,
 }
 
 /// Measurements of all samplers on a scene.
 #[derive(Debug)]
-pub(super) struct Measured {
+pub struct Measured {
     /// Name of the scene.
-    pub(super) name: Name,
+    pub name: Name,
     /// Name of the environment map, if it is the caller's.
     map: Option<String>,
     /// Integrator that estimates the light.
-    pub(super) integrator: Integrator,
+    pub integrator: Integrator,
     /// Name of the hair.
-    pub(super) hair: String,
+    pub hair: String,
     /// Settings of the pictures, except samplers and samples.
     of_scene: String,
     /// Seed of the samples.
@@ -153,16 +161,20 @@ pub(super) struct Measured {
     /// Samples per pixel of each half of the reference.
     halves: u32,
     /// Share of the rays towards lights that reach them, with the best sampler.
-    pub(super) visible: f64,
+    pub visible: f64,
     /// Picture that the others are compared with.
-    pub(super) reference: Reference,
+    pub reference: Reference,
     /// Samplers in the order of [`SAMPLERS`]; the last is the best.
-    pub(super) samplers: Vec<BySampler>,
+    pub samplers: Vec<BySampler>,
 }
 
 impl Measured {
     /// Renders the pictures that the store does not hold yet.
-    pub(super) fn render(
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of the store, and [`Error::Interrupted`] if the run is stopped.
+    pub fn render(
         name: Name,
         map: Option<(String, Environment)>,
         hair: &Choice,
@@ -275,12 +287,14 @@ impl Measured {
     }
 
     /// Returns the name of the scene on the page.
-    pub(super) fn title(&self) -> String {
+    #[must_use]
+    pub fn title(&self) -> String {
         title(self.name, self.map.as_deref(), &self.hair)
     }
 
     /// Returns the name of the best sampler.
-    pub(super) fn best(&self) -> &'static str {
+    #[must_use]
+    pub fn best(&self) -> &'static str {
         self.samplers.last().map_or(MATCHED, |best| best.name)
     }
 

@@ -20,7 +20,7 @@ pub(super) const PRESETS: [&str; 4] = ["blond", "brown", "black", "red"];
 
 /// Pictures of one preset, one for each model; the first model is the published one.
 #[derive(Debug)]
-pub(super) struct Preset {
+pub struct Preset {
     name: &'static str,
     samples: u32,
     models: Vec<(&'static str, Reference)>,
@@ -28,7 +28,11 @@ pub(super) struct Preset {
 
 impl Preset {
     /// Renders the scene `head` with every model, except for pictures that the store holds.
-    pub(super) fn render(
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of the store, and [`Error::Interrupted`] if the run is stopped.
+    pub fn render(
         name: &'static str,
         plan: &Plan,
         seed: u64,

@@ -23,7 +23,11 @@ use std::io::Write as _;
 use std::path::Path;
 
 /// Writes `report.html` with everything that is measured so far.
-pub(super) fn write(
+///
+/// # Errors
+///
+/// Returns an error if the file cannot be written.
+pub fn write(
     all: &[Measured],
     presets: &[Preset],
     plan: &Plan,
@@ -208,6 +212,8 @@ fn sampled(sampling: RectangleSampling) -> &'static str {
     }
 }
 
+/// Returns the light that a scene estimates, in words.
+#[must_use]
 pub(super) fn kind(measured: &Measured) -> &'static str {
     match measured.integrator {
         Integrator::Gather => "direct, at shading points",

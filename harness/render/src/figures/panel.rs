@@ -19,15 +19,24 @@ const ZOOM: u32 = 4;
 
 /// Column of a panel: a title, a remark, a picture, and one error per pixel for each map. If the first column has no errors, it holds
 /// the legends.
-pub(super) struct Column<'a> {
-    pub(super) title: String,
-    pub(super) remark: String,
-    pub(super) picture: &'a Picture,
-    pub(super) errors: Vec<Vec<f64>>,
+#[derive(Clone, Debug)]
+pub struct Column<'a> {
+    /// Title, such as the name of the sampler.
+    pub title: String,
+    /// Line below the title.
+    pub remark: String,
+    /// Picture in the first row.
+    pub picture: &'a Picture,
+    /// Errors of the pixels, row by row, for each map.
+    pub errors: Vec<Vec<f64>>,
 }
 
 /// Draws rows of pictures, of crops and of error maps as SVG.
-pub(super) fn panel(
+///
+/// # Errors
+///
+/// Returns an error only if the encoder of PNG reports one.
+pub fn panel(
     columns: &[Column],
     crops: &[Crop; 2],
     maps: &[Map],
@@ -161,7 +170,8 @@ fn enlarge(image: &RgbImage) -> RgbImage {
 }
 
 /// Returns two parts of `1 / ZOOM` the size that do not overlap: the brightest part, and the part of the largest squared error.
-pub(super) fn crops(picture: &Picture, squares: &[f64]) -> [Crop; 2] {
+#[must_use]
+pub fn crops(picture: &Picture, squares: &[f64]) -> [Crop; 2] {
     let [width, height] = picture.size.map(|side| (side / ZOOM).max(1));
     let starts =
         |side: u32, part: u32| (0..=side.saturating_sub(part)).step_by((part / 2).max(1) as usize);
@@ -193,60 +203,4 @@ pub(super) fn crops(picture: &Picture, squares: &[f64]) -> [Crop; 2] {
     };
     let brightest = most(&picture.luminances(), None);
     [brightest, most(squares, Some(brightest))]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_panel_needs_no_other_file() {
-        let picture = Picture::black([16, 16]);
-        let column = |errors| Column {
-            title: "<b>".to_owned(),
-            remark: String::new(),
-            picture: &picture,
-            errors,
-        };
-        let columns = [
-            column(vec![]),
-            column(vec![vec![0.5; 256], vec![0.25; 256]]),
-        ];
-        let maps = [
-            Map::signed("bias", 1.0, &["blue"]),
-            Map::squared("noise", 1.0, &[]),
-        ];
-        let svg = panel(&columns, &crops(&picture, &[0.0; 256]), &maps, 1.0).expect("a drawing");
-        // Picture and two crops of both, two legends, two maps.
-        assert!(
-            svg.contains("&lt;b&gt;") && svg.matches("data:image/png;base64,").count() == 10,
-            "{svg}"
-        );
-        assert!(
-            !svg.replace("http://www.w3.org/2000/svg", "")
-                .contains("http")
-        );
-    }
-
-    #[test]
-    fn crops_show_the_brightest_and_the_worst_part_apart() {
-        let mut picture = Picture::black([16, 16]);
-        picture.pixels[16 * 9 + 13] = [1.0; 3];
-        let holds = |crop: &Crop, pixel| crop.pixels().any(|at| at == pixel);
-        let mut squares = vec![0.0; 256];
-        squares[16 * 2 + 3] = 1.0;
-        let [brightest, worst] = crops(&picture, &squares);
-        assert!(
-            holds(&brightest, [13, 9]) && holds(&worst, [3, 2]),
-            "{brightest:?} {worst:?}"
-        );
-        // The largest error lies in the brightest part: the next largest is shown.
-        squares[16 * 9 + 13] = 2.0;
-        let [brightest, worst] = crops(&picture, &squares);
-        assert!(
-            brightest.pixels().all(|pixel| !holds(&worst, pixel)),
-            "{brightest:?} {worst:?}"
-        );
-        assert!(holds(&worst, [3, 2]), "{worst:?}");
-    }
 }

@@ -37,7 +37,7 @@ const MOMENT: Duration = Duration::from_millis(300);
 /// The name of a file has a digest of everything that the measurement depends on, and the second line of the file spells that out.
 /// A run with other settings, another seed or another build therefore has other files.
 #[derive(Debug)]
-pub(super) struct Store {
+pub struct Store {
     folder: PathBuf,
     build: String,
     interrupt: Interrupt,
@@ -52,7 +52,7 @@ impl Store {
     /// # Errors
     ///
     /// Returns an error if the folder cannot be made or read, or if it holds measurements in another format.
-    pub(super) fn new(out: &Path, interrupt: Interrupt) -> Result<Self, Error> {
+    pub fn new(out: &Path, interrupt: Interrupt) -> Result<Self, Error> {
         let folder = out.join("unfinished");
         let refuse = |source| Error::Output {
             path: folder.clone(),
@@ -71,13 +71,19 @@ impl Store {
         })
     }
 
+    /// Sets the build whose measurements the run uses, in place of that of this program.
+    #[must_use]
+    pub fn with_build(self, build: String) -> Self {
+        Self { build, ..self }
+    }
+
     /// Returns a measurement, which is read if an earlier run has finished it, and is otherwise made and written. `settings` is a line
     /// of everything that the measurement depends on.
     ///
     /// # Errors
     ///
     /// Returns an error if the file cannot be written, or the error of `measure`.
-    pub(super) fn get(
+    pub fn get(
         &self,
         name: &str,
         settings: &str,
@@ -113,7 +119,7 @@ impl Store {
     /// # Errors
     ///
     /// Returns the errors of [`get`](Self::get).
-    pub(super) fn reference(
+    pub fn reference(
         &self,
         name: &str,
         of_scene: &str,
@@ -134,17 +140,17 @@ impl Store {
     }
 
     /// Returns the folder of the files.
-    pub(super) fn folder(&self) -> &Path {
+    pub fn folder(&self) -> &Path {
         &self.folder
     }
 
     /// Returns the count of measurements that an earlier run has left.
-    pub(super) fn resumed(&self) -> usize {
+    pub fn resumed(&self) -> usize {
         self.resumed.get()
     }
 
     /// Removes the files of this run, whose report is complete.
-    pub(super) fn remove(self) {
+    pub fn remove(self) {
         for path in self.used.into_inner() {
             // Ignore errors: a file that is gone need not be removed.
             let _ = fs::remove_file(path);
@@ -156,7 +162,8 @@ impl Store {
 
 /// Pictures of a measurement that is not finished. Each has a file of its own as soon as it takes
 /// longer than a moment.
-pub(super) struct Films<'a> {
+#[derive(Debug)]
+pub struct Films<'a> {
     store: &'a Store,
     /// Name of the measurement's file without its ending.
     stem: String,
@@ -170,7 +177,7 @@ impl Films<'_> {
     /// # Errors
     ///
     /// Returns an error if the picture cannot be saved, and [`Error::Interrupted`] if the run is stopped.
-    pub(super) fn render(
+    pub fn render(
         &self,
         scene: &Scene,
         settings: &Settings,
@@ -278,7 +285,10 @@ fn bytes(measured: &Runs, key: &str) -> Vec<u8> {
     bytes
 }
 
-fn parse(bytes: &[u8], key: &str) -> Option<Runs> {
+/// Decodes a measurement. Returns `None` if the bytes are damaged, or if they are not those of a measurement with this key: its
+/// settings and its build.
+#[must_use]
+pub fn parse(bytes: &[u8], key: &str) -> Option<Runs> {
     let rest = unseal(bytes)?
         .strip_prefix(MAGIC.as_bytes())?
         .strip_prefix(b"\n")?;
@@ -317,129 +327,4 @@ fn parse(bytes: &[u8], key: &str) -> Option<Runs> {
         bias,
         squares,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn runs() -> Runs {
-        let errors = [1.0, 3.0].map(|x| Errors {
-            values: [x, 0.7 * x, 0.5 * x, 0.25 * x],
-            own: [1e-9; 4],
-        });
-        let pixels = (0..12_u8)
-            .map(|k| [1.0, 0.1, 1.0 / 3.0].map(|x| x * f64::from(k)))
-            .collect();
-        Runs {
-            samples: 16,
-            seconds: 0.75,
-            errors: errors.to_vec(),
-            variance: Estimate {
-                value: 2.0,
-                standard_error: 0.25,
-            },
-            picture: Picture {
-                size: [4, 3],
-                pixels,
-            },
-            bias: vec![-0.125; 12],
-            squares: vec![0.1; 12],
-        }
-    }
-
-    fn new(out: &Path) -> Result<Store, Error> {
-        Store::new(out, Interrupt::default())
-    }
-
-    fn only_file(store: &Store) -> PathBuf {
-        let mut files = fs::read_dir(&store.folder).expect("a folder");
-        files.next().expect("a file").expect("read").path()
-    }
-
-    #[test]
-    fn settings_that_differ_share_nothing() {
-        let folder = tempfile::TempDir::new().expect("a folder");
-        let store = new(folder.path()).expect("a folder");
-        let get = |store: &Store, settings: &str| {
-            let mut made = false;
-            let make = |_: &Films<'_>| {
-                made = true;
-                Ok(runs())
-            };
-            assert_eq!(store.get("area", settings, make).expect("written"), runs());
-            made
-        };
-        assert!(get(&store, "seed=1"));
-        assert!(
-            !get(&store, "seed=1") && store.resumed() == 0,
-            "the same run"
-        );
-        let again = new(folder.path()).expect("a folder");
-        assert!(
-            !get(&again, "seed=1") && again.resumed() == 1,
-            "the next run"
-        );
-        assert!(get(&again, "seed=2"), "another seed");
-        let other = Store {
-            build: "commit=other".to_owned(),
-            ..new(folder.path()).expect("a folder")
-        };
-        assert!(get(&other, "seed=1"), "another build");
-        other.remove();
-        again.remove();
-        assert!(
-            !folder.path().join("unfinished").exists(),
-            "both have left nothing"
-        );
-    }
-
-    #[test]
-    fn other_formats_are_refused_by_name() {
-        let folder = tempfile::TempDir::new().expect("a folder");
-        let store = new(folder.path()).expect("a folder");
-        store
-            .get("area", "seed=1", |_| Ok(runs()))
-            .expect("written");
-        new(folder.path()).expect("the same format");
-        let path = store.folder.join("box-uniform-4-0123.part");
-        fs::write(&path, "hairis-render measurement 1\nscene=box\n\u{0}").expect("written");
-        let message = new(folder.path()).expect_err("refused").to_string();
-        assert!(
-            message.contains("box-uniform-4-0123.part") && message.contains("measurement 1\""),
-            "{message}"
-        );
-    }
-
-    #[test]
-    fn damaged_files_are_measured_again() {
-        let folder = tempfile::TempDir::new().expect("a folder");
-        let store = new(folder.path()).expect("a folder");
-        store
-            .get("area", "seed=1", |_| Ok(runs()))
-            .expect("written");
-        let path = only_file(&store);
-        let (good, key) = (
-            fs::read(&path).expect("there"),
-            format!("seed=1 {}", store.build),
-        );
-        assert_eq!(parse(&good, &key), Some(runs()));
-        for byte in 0..good.len() {
-            let mut bad = good.clone();
-            bad[byte] ^= 4;
-            assert_eq!(parse(&bad, &key), None, "byte {byte} changed");
-            assert_eq!(parse(&good[..byte], &key), None, "cut at {byte}");
-        }
-        fs::write(&path, &good[..99]).expect("written");
-        let mut made = false;
-        let make = |_: &Films<'_>| {
-            made = true;
-            Ok(runs())
-        };
-        store.get("area", "seed=1", make).expect("written");
-        assert!(
-            made && fs::read(&path).expect("there") == good,
-            "whole again"
-        );
-    }
 }

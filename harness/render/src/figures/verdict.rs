@@ -15,13 +15,15 @@ pub(super) const MEASURES: [Measure; 3] = [Measure::Mse, Measure::RelMse, Measur
 const HEADLINE: [Measure; 2] = [Measure::TrimmedRelMse, Measure::Mse];
 
 /// Mark behind errors that cannot be told from noise of the reference.
-pub(super) const BELOW: &str = " (below the reference)";
+pub const BELOW: &str = " (below the reference)";
 
 /// Ratio of two errors, and whether one of them is below the reference.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Gain {
-    pub(super) ratio: Estimate,
-    pub(super) is_below: bool,
+pub struct Gain {
+    /// Ratio of the errors.
+    pub ratio: Estimate,
+    /// Whether an error cannot be told from noise of the reference.
+    pub is_below: bool,
 }
 
 impl Gain {
@@ -35,13 +37,15 @@ impl Gain {
     }
 
     /// Formats the ratio with its standard error, and a mark if an error is below the reference.
-    pub(super) fn text(&self) -> String {
+    #[must_use]
+    pub fn text(&self) -> String {
         let mark = if self.is_below { BELOW } else { "" };
         ratio_with_error(self.ratio.value, self.ratio.standard_error) + mark
     }
 
     /// Returns `Greater` or `Less` if the ratio differs from 1 by a gain and by more than two standard errors, and otherwise `Equal`.
-    fn side(&self) -> Ordering {
+    #[must_use]
+    pub fn side(&self) -> Ordering {
         let Estimate {
             value,
             standard_error,
@@ -60,7 +64,8 @@ impl Gain {
 
     /// Returns true if the ratio lies between 1 / `GAIN` and `GAIN` with two standard errors to spare: a gain is ruled out, rather than
     /// not found.
-    fn is_none(&self) -> bool {
+    #[must_use]
+    pub fn is_none(&self) -> bool {
         let Estimate {
             value,
             standard_error,
@@ -260,39 +265,4 @@ pub(super) fn visible(measured: &Measured) -> String {
         "{:.0} % of the rays towards lights reach them.",
         100.0 * measured.visible
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_gain_is_not_the_same_as_none_found() {
-        let gain = |value, standard_error, is_below| Gain {
-            ratio: Estimate {
-                value,
-                standard_error,
-            },
-            is_below,
-        };
-        assert!(gain(1.07, 0.01, false).is_none() && gain(0.9, 0.01, false).is_none());
-        for unclear in [
-            gain(1.07, 0.1, false),
-            gain(3.0, 1.5, false),
-            gain(1.07, 0.01, true),
-            gain(0.9, 0.03, false),
-        ] {
-            assert!(
-                !unclear.is_none() && unclear.side() == Ordering::Equal,
-                "{unclear:?}"
-            );
-        }
-        assert_eq!(gain(1.3, 0.1, false).side(), Ordering::Greater);
-        assert_eq!(gain(0.5, 0.1, false).side(), Ordering::Less);
-        assert!(gain(1.3, 0.1, true).text().ends_with(BELOW));
-        assert!(
-            !gain(1.0, f64::NAN, false).is_none(),
-            "an error that is not known"
-        );
-    }
 }

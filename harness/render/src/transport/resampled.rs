@@ -1,7 +1,7 @@
 //! Direct light by resampling: rays are traced for the candidates that would contribute the most light.
 
 mod candidates;
-mod cells;
+pub mod cells;
 
 pub(super) use candidates::Candidates;
 

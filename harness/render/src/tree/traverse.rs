@@ -72,6 +72,30 @@ impl<B: Leaf, C: Count> Kernel for Any<'_, B, C> {
     }
 }
 
+/// Test of a ray against every block.
+pub(super) struct All<'a, B> {
+    pub(super) boxes: &'a Boxes<B>,
+    pub(super) ray: &'a Ray,
+}
+
+impl<B: Leaf> Kernel for All<'_, B> {
+    type Output = Vec<B::Hit>;
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Vec<B::Hit> {
+        let spread = Spread::<L>::new(self.ray, self.boxes.meet);
+        let mut hits = Vec::new();
+        for block in &self.boxes.blocks {
+            let (met, [t, s]) = block.meet(&spread, f32::INFINITY);
+            let lanes = (0..8).filter(|lane| met >> lane & 1 == 1);
+            hits.extend(
+                lanes.map(|lane| block.hit(lane, self.ray, t.as_array()[lane], s.as_array()[lane])),
+            );
+        }
+        hits
+    }
+}
+
 /// The nearest hit so far.
 #[derive(Clone, Copy)]
 struct Best {

@@ -4,16 +4,17 @@ use hairis::Vec3x8;
 use hairis::simd::{Broadcast, Kernel, Lanes, Level, f32x8};
 
 /// Number of cells along a side of the square to which the sphere is unfolded.
-const SIDE: usize = 8;
+pub const SIDE: usize = 8;
 /// Number of cells.
-pub(super) const CELLS: usize = SIDE * SIDE;
+pub const CELLS: usize = SIDE * SIDE;
 
 /// Places of the square's cells along Hilbert's curve, row by row.
-static CURVE: [u8; CELLS] = curve();
+pub static CURVE: [u8; CELLS] = curve();
 
 /// Returns the cell of a unit vector per lane.
 #[inline]
-pub(super) fn cells(direction: &Vec3x8) -> [u8; 8] {
+#[must_use]
+pub fn cells(direction: &Vec3x8) -> [u8; 8] {
     let [a, b] = Level::detect()
         .run(Unfold(direction))
         .map(|side| side.fast_trunc_int().to_array());
@@ -75,62 +76,4 @@ const fn curve() -> [u8; CELLS] {
         place += 1;
     }
     places
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::Vec3;
-    use hairis_instruments::sequence::{Independent, XiSource as _};
-
-    #[test]
-    fn the_curve_goes_from_cell_to_neighbour() {
-        let mut at = [[0; 2]; CELLS];
-        for (index, place) in CURVE.iter().enumerate() {
-            at[usize::from(*place)] = [index / SIDE, index % SIDE];
-        }
-        for pair in at.windows(2) {
-            let steps = pair[0][0].abs_diff(pair[1][0]) + pair[0][1].abs_diff(pair[1][1]);
-            assert_eq!(steps, 1, "{pair:?}");
-        }
-    }
-
-    #[test]
-    fn a_cell_is_a_small_part_of_the_sphere() {
-        let mut xi = Independent::new(3, 0);
-        let mut members = vec![Vec::new(); CELLS];
-        for _ in 0..4000 {
-            let dirs: [Vec3; 8] =
-                core::array::from_fn(|_| crate::lights::uniform_direction(xi.next_xi_f32()));
-            for (dir, cell) in dirs.iter().zip(cells(&dirs.into())) {
-                members[usize::from(cell)].push(*dir);
-            }
-        }
-        for members in &members {
-            let mean = members.iter().sum::<Vec3>().normalize();
-            assert!(members.len() > 200, "{} directions", members.len());
-            // The sphere has cells of 0.2 sr, longer where it is unfolded.
-            assert!(
-                members.iter().all(|dir| dir.dot(mean) > 0.7),
-                "about {mean}"
-            );
-        }
-        let none = cells(
-            &[
-                Vec3::ZERO,
-                Vec3::NAN,
-                Vec3::INFINITY,
-                Vec3::Y,
-                -Vec3::Y,
-                Vec3::X,
-                -Vec3::X,
-                Vec3::Z,
-            ]
-            .into(),
-        );
-        assert!(
-            none.iter().all(|cell| usize::from(*cell) < CELLS),
-            "{none:?}"
-        );
-    }
 }

@@ -1,13 +1,19 @@
 //! Comparison of light drawn from tables with light drawn at each point.
 
-use super::*;
-use crate::hair::{Choice, Energy};
-use crate::lights::{Rectangle, Table};
-use crate::scenes::{self, Name, Parts};
+mod profile;
+mod resampled;
+
 use glam::Vec3;
+use hairis::simd::f32x8;
 use hairis_instruments::light::Environment;
 use hairis_instruments::sequence::{Independent, XiSource as _};
 use hairis_instruments::stats::{Estimate, Moments};
+use hairis_render::film::{Crop, Film};
+use hairis_render::hair::{Choice, Energy};
+use hairis_render::lights::{LightSample8, Rectangle, Table};
+use hairis_render::scene::Scene;
+use hairis_render::scenes::{self, Name, Parts};
+use hairis_render::transport::{Integrator, Mis, Settings, render_by_tables, tables};
 use rayon::prelude::*;
 
 /// Returns a few strands on a head under a map with bright texels, with or without two lamps.
@@ -62,24 +68,26 @@ fn mean(scene: &Scene, integrator: Integrator, mis: Mis, samples: u32, factor: f
             seed,
             ..Settings::default()
         };
-        let length = resampled::length(integrator);
-        let mut tables = Tables::new(&scene.sky, seed, length);
+        let mut tables = tables(scene, &settings);
         if factor != 1.0 {
-            let mut table = Table::draw(&scene.sky, seed, length);
-            table
-                .iter_mut()
-                .for_each(|table| table.scale_density(factor));
-            tables.set(table);
+            let table = Table::draw(&scene.sky, seed, tables.length()).expect("a sky");
+            let scaled = |block: &LightSample8| LightSample8 {
+                pdf: block.pdf * f32x8::splat(factor),
+                ..*block
+            };
+            let scaled: Vec<_> = table.blocks().iter().map(scaled).collect();
+            tables = tables.with_first(Some(scaled.into()));
         }
         let mut film = Film::new(Crop::whole(scene.camera.size()));
-        for tile in &mut film.tiles {
-            match integrator {
-                Integrator::Gather => gather::tile(scene, &tables, &settings, tile, samples),
-                Integrator::Direct | Integrator::Path => {
-                    paths(scene, &tables, &settings, tile, samples)
-                }
-            }
-        }
+        render_by_tables(
+            scene,
+            &tables,
+            &settings,
+            &mut film,
+            samples,
+            &|_| (),
+            &|| false,
+        );
         film.picture().luminances().iter().sum()
     };
     let all: Vec<f64> = (0..200).into_par_iter().map(luminance).collect();

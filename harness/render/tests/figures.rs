@@ -1,20 +1,27 @@
 //! Runs of figures that are stopped and started again.
 
-use super::measure::{Measured, Plan, preset};
-use super::models::Preset;
-use super::page;
-use super::store::Store;
-use crate::args::{Args, Command};
-use crate::hair::Choice;
-use crate::lights::RectangleSampling;
-use crate::protocol::Runs;
-use crate::scenes::Name;
-use crate::transport::Integrator;
+mod csv;
+mod map;
+mod names;
+mod panel;
+mod store;
+mod verdict;
+
 use clap::Parser as _;
 use core::cell::Cell;
 use core::panic::AssertUnwindSafe;
 use hairis_instruments::interrupt::{Interrupt, Signal};
 use hairis_materials::MaterialSpec;
+use hairis_render::args::{Args, Command};
+use hairis_render::figures::measure::{Measured, Plan, preset};
+use hairis_render::figures::models::Preset;
+use hairis_render::figures::store::Store;
+use hairis_render::figures::{SCENES, page};
+use hairis_render::hair::Choice;
+use hairis_render::lights::RectangleSampling;
+use hairis_render::protocol::Runs;
+use hairis_render::scenes::Name;
+use hairis_render::transport::Integrator;
 use std::panic::catch_unwind;
 use std::path::Path;
 
@@ -204,7 +211,7 @@ fn hair_that_paths_do_not_converge_in_is_refused() {
         message.contains("area-soft") && message.contains("default") && message.contains("0.98"),
         "{message}"
     );
-    for name in super::SCENES {
+    for name in SCENES {
         check(&TINY, name).expect("its own integrator");
     }
     check(&paths, Name::Env).expect("blond hair");

@@ -1,5 +1,10 @@
-use super::*;
+//! Tests of `part`.
+
 use glam::Vec3;
+use hairis_render::film::{Crop, Film};
+use hairis_render::part::{Log, MAGIC, Part, record};
+use std::fs;
+use std::path::PathBuf;
 
 fn part() -> Part {
     let mut film = Film::new(Crop {

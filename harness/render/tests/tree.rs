@@ -1,41 +1,24 @@
 //! Comparison of the tree with a test of every block one by one, on every level.
 
-use super::block::{Block, Leaf as _};
-use super::ray::Spread;
-use super::{Hit, Meet, Ray, Skip, Tree, TreeError};
-use crate::geometry::{Builder, Flattening, Groom, Kind, Strands};
+mod triangles;
+
 use glam::Vec3;
-use hairis::simd::{Kernel, Lanes, Level, f32x8};
+use hairis::simd::Level;
+use hairis_render::geometry::{Builder, Flattening, Groom, Kind, Strands};
+use hairis_render::tree::{Hit, Meet, Ray, Skip, Tree, TreeError};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
-
-/// Kernel that tests a ray against one block alone.
-struct Alone<'a>(&'a Block, &'a Ray, Meet);
-
-impl Kernel for Alone<'_> {
-    type Output = (u32, [f32x8; 2]);
-
-    #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Self::Output {
-        self.0
-            .meet(&Spread::<L>::new(self.1, self.2), f32::INFINITY)
-    }
-}
 
 /// Returns the nearest hit, found by a test of all segments.
 fn search_all(tree: &Tree, ray: &Ray) -> Option<Hit> {
     let mut best: Option<Hit> = None;
-    for block in &tree.0.blocks {
-        let (met, [t, s]) = tree.0.level.run(Alone(block, ray, tree.meet()));
-        for lane in (0..8).filter(|lane| met >> lane & 1 == 1) {
-            let hit = block.hit(lane, ray, t.as_array()[lane], s.as_array()[lane]);
-            let ignored = ray
-                .skip
-                .is_some_and(|skip| skip.strand == hit.strand && hit.t < skip.before);
-            let before = |best: Hit| (hit.t, hit.segment) < (best.t, best.segment);
-            if hit.t < ray.t_max && !ignored && best.is_none_or(before) {
-                best = Some(hit);
-            }
+    for hit in tree.every_hit(ray) {
+        let ignored = ray
+            .skip
+            .is_some_and(|skip| skip.strand == hit.strand && hit.t < skip.before);
+        let before = |best: Hit| (hit.t, hit.segment) < (best.t, best.segment);
+        if hit.t < ray.t_max && !ignored && best.is_none_or(before) {
+            best = Some(hit);
         }
     }
     best
@@ -295,7 +278,7 @@ fn strands_and_trees_are_the_same_for_any_number_of_threads() {
                 .grow(&Flattening::default())
                 .expect("settings in range");
             let tree = Tree::build(&strands).expect("a small scene");
-            (strands, format!("{:?} {:?}", tree.0.nodes, tree.0.blocks))
+            (strands, format!("{tree:?}"))
         })
     };
     let one = with(1);

@@ -1,0 +1,3 @@
+//! Tests of `formats`.
+
+mod follow;

@@ -1,0 +1,4 @@
+//! Tests of `geometry`.
+
+mod spline;
+mod strands;

@@ -1,0 +1,3 @@
+//! Tests of `resampled`.
+
+mod cells;
