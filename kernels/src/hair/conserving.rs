@@ -88,7 +88,7 @@ pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
     horner! { 0 m; 1 n; 2 o; }
     let by = [by[0].min(c(0.0)), by[1].min(c(0.0)), by[2].min(c(0.0))];
     // Either sum loses digits next to -1, where no fit exists: see `LEAST`.
-    if L::FUSES {
+    if L::fuses() {
         return scaled::<L, true>(view, by);
     }
     let by = L::together([by[0] + 1.0, by[1] + 1.0, by[2] + 1.0]);

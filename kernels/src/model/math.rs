@@ -46,7 +46,7 @@ fn halves<L: Lanes, const N: usize, const FIRST: usize>(x: L, coefficients: [f32
 /// polynomials then have their even and odd halves apart, except for the two lowest coefficients, for the sake of the error.
 #[inline(always)]
 pub fn horner<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
-    let apart = !L::FUSES && N > 7;
+    let apart = !L::fuses() && N > 7;
     let mut sum = if apart {
         halves::<L, N, 2>(x, coefficients)
     } else {
@@ -67,7 +67,7 @@ pub fn horner<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
 /// Returns `[a / x, b / y]`. Lanes that fuse share one division, their slowest instruction; others have the time for two.
 #[inline(always)]
 pub(crate) fn quotients<L: Lanes>([a, x]: [L; 2], [b, y]: [L; 2]) -> [L; 2] {
-    if L::FUSES {
+    if L::fuses() {
         let both = L::quotient(L::splat(1.0), x * y);
         [a * (both * y), b * (both * x)]
     } else {

@@ -77,8 +77,11 @@ impl Lanes for Avx2 {
     type Mask = __m256;
     type Index = Indices;
     type Stored = f32x8;
-    const FUSES: bool = true;
 
+    #[inline(always)]
+    fn fuses() -> bool {
+        true
+    }
     #[inline(always)]
     fn splat(x: f32) -> Self {
         Self(avx2!(_mm256_set1_ps(x)))

@@ -47,9 +47,9 @@ pub trait Lanes:
     type Index: Choice<Self>;
     /// Storage of the lanes between calls: `f32` for one, `wide::f32x8` for eight.
     type Stored: Broadcast<Self>;
-    /// True if [`mul_add`](Self::mul_add) rounds once.
-    const FUSES: bool;
-
+    /// Returns true if [`mul_add`](Self::mul_add) rounds once: a constant, except for lanes that record.
+    #[must_use]
+    fn fuses() -> bool;
     /// Repeats a number in every lane.
     fn splat(x: f32) -> Self;
     /// Returns the lanes in their storage form.

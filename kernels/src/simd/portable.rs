@@ -236,8 +236,11 @@ macro_rules! eight_lanes {
             /// Masks: the chosen number is at least each of the three bounds.
             type Index = [f32x8; 3];
             type Stored = f32x8;
-            const FUSES: bool = $fuses;
 
+            #[inline(always)]
+            fn fuses() -> bool {
+                $fuses
+            }
             #[inline(always)]
             fn splat(x: f32) -> Self {
                 Self::wrap(splat(x))
@@ -252,7 +255,7 @@ macro_rules! eight_lanes {
             }
             #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
-                if Self::FUSES {
+                if Self::fuses() {
                     Self::wrap(self.unwrap().mul_add(a.unwrap(), b.unwrap()))
                 } else {
                     self * a + b
@@ -261,7 +264,7 @@ macro_rules! eight_lanes {
             // `wide` splats the sign that it negates with, at a cost (see `splat`).
             #[inline(always)]
             fn mul_sub(self, a: Self, b: Self) -> Self {
-                if Self::FUSES {
+                if Self::fuses() {
                     Self::wrap(self.unwrap().mul_add(a.unwrap(), b.unwrap() ^ SIGN))
                 } else {
                     self * a - b
@@ -269,7 +272,7 @@ macro_rules! eight_lanes {
             }
             #[inline(always)]
             fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
-                if Self::FUSES {
+                if Self::fuses() {
                     difference_fused(a, b, c, d)
                 } else {
                     difference_split([a, b, c, d], [split(a), split(b), split(c), split(d)])

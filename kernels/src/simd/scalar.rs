@@ -65,8 +65,11 @@ impl Lanes for f32 {
     type Mask = bool;
     type Index = usize;
     type Stored = f32;
-    const FUSES: bool = false;
 
+    #[inline(always)]
+    fn fuses() -> bool {
+        false
+    }
     #[inline(always)]
     fn splat(x: f32) -> Self {
         x

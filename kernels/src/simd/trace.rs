@@ -1,8 +1,8 @@
 //! Lanes that compute nothing, but pass each operation to a recorder, which makes a graph of the model.
 //!
 //! A model over [`Lanes`] has no control flow that depends on its data, so that one run on these lanes turns it into a straight line
-//! of the operations of [`Op`]. The results have the bits of one lane with [`Exact`], and the bits of a level that fuses with
-//! [`Fused`].
+//! of the operations of [`Op`]. The results have the bits of one lane with [`Target::Exact`], and the bits of a level that
+//! fuses with [`Target::Fused`].
 
 use super::choice::Choice;
 use super::lanes::{
@@ -34,9 +34,9 @@ pub enum Op {
     Neg,
     /// `a * b + c`, rounded once. Only lanes that fuse record it.
     MulAdd,
-    /// `2^a` of the target. Only [`GpuNative`] records it.
+    /// `2^a` of the target. Only [`Target::GpuNative`] records it.
     Exp2,
-    /// Logarithm to the base 2 of the target. Only [`GpuNative`] records it.
+    /// Logarithm to the base 2 of the target. Only [`Target::GpuNative`] records it.
     Log2,
     /// Square root.
     Sqrt,
@@ -129,8 +129,49 @@ impl Op {
     }
 }
 
+/// Arithmetic of the target that a graph is for: how products with sums round, and whose exponentials are used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Target {
+    /// Products and sums round separately, with the bits of one lane.
+    Exact,
+    /// Products with sums round once ([`Op::MulAdd`]), with the bits of a level that fuses.
+    Fused,
+    /// Products with sums may round once or twice, as WGSL allows for its `fma`.
+    Gpu,
+    /// Like [`Gpu`](Self::Gpu), but with the `exp2` and `log2` of the target.
+    ///
+    /// - Accuracy: [`math::gaussian`](crate::model::math::gaussian) and [`math::log2`](crate::model::math::log2) have the error of
+    ///   the target's `exp2` and `log2`: in WGSL 3 + 2 |x| units in the last place, and 3 units or 2^-21 for the logarithm.
+    GpuNative,
+}
+
+impl Target {
+    /// Returns true if [`Lanes::mul_add`] is one operation.
+    #[inline]
+    #[must_use]
+    pub const fn fuses(self) -> bool {
+        !matches!(self, Self::Exact)
+    }
+
+    /// Returns true if that operation rounds once on every target, which Kahan's difference of products relies on.
+    #[inline]
+    #[must_use]
+    pub const fn rounds_once(self) -> bool {
+        matches!(self, Self::Fused)
+    }
+
+    /// Returns true if powers and logarithms to the base 2 are computed by the target.
+    #[inline]
+    #[must_use]
+    pub const fn is_native(self) -> bool {
+        matches!(self, Self::GpuNative)
+    }
+}
+
 /// Receiver of operations, which names their results. It receives an operation before any operation that reads its result.
 pub trait Recorder: 'static {
+    /// Returns the target that the operations are recorded for. It changes only between recordings.
+    fn target() -> Target;
     /// Records the operation `op` on the results named by `args`, of which it reads [`Op::arity`]. `at` is the line of the model
     /// that called the operation.
     fn record(op: Op, args: [u32; 3], at: &'static Location<'static>) -> u32;
@@ -138,48 +179,10 @@ pub trait Recorder: 'static {
     fn stage(sentence: &'static str);
 }
 
-/// Arithmetic of the target that a graph is for. Sealed.
-pub trait Arithmetic: Sealed + 'static {
-    /// True if [`Lanes::mul_add`] is one operation.
-    const FUSES: bool;
-    /// True if that operation rounds once on every target, which Kahan's difference of products relies on.
-    const ROUNDS_ONCE: bool;
-    /// True if powers and logarithms to the base 2 are computed by the target.
-    const NATIVE: bool;
-}
-
-macro_rules! arithmetics {
-    ($($(#[$doc:meta])* $name:ident: $fuses:literal, $rounds_once:literal, $native:literal;)*) => { $(
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug)]
-        pub enum $name {}
-
-        impl Sealed for $name {}
-        impl Arithmetic for $name {
-            const FUSES: bool = $fuses;
-            const ROUNDS_ONCE: bool = $rounds_once;
-            const NATIVE: bool = $native;
-        }
-    )* };
-}
-arithmetics! {
-    /// Arithmetic of one lane: products and sums round separately.
-    Exact: false, false, false;
-    /// Arithmetic of levels that fuse: [`Op::MulAdd`] rounds once.
-    Fused: true, true, false;
-    /// Arithmetic of GPUs, whose fused product may be two operations.
-    Gpu: true, false, false;
-    /// Arithmetic of GPUs, with powers and logarithms of the target.
-    ///
-    /// - Accuracy: [`math::gaussian`](crate::model::math::gaussian) and [`math::log2`](crate::model::math::log2) have the error of
-    ///   the target's `exp2` and `log2`: in WGSL 3 + 2 |x| units in the last place, and 3 units or 2^-21 for the logarithm.
-    GpuNative: true, false, true;
-}
-
 /// Number on lanes that record, as the name that the recorder gave its result.
-pub struct Traced<R, A> {
+pub struct Traced<R> {
     name: u32,
-    kind: PhantomData<fn() -> (R, A)>,
+    kind: PhantomData<fn() -> R>,
 }
 
 /// Mask on lanes that record, as the name that the recorder gave its result.
@@ -189,21 +192,21 @@ pub struct TracedMask<R> {
 }
 
 macro_rules! names {
-    ($($Name:ident [$($generics:ident),*] $letter:literal;)*) => { $(
-        impl<$($generics),*> Clone for $Name<$($generics),*> {
+    ($($Name:ident $letter:literal;)*) => { $(
+        impl<R> Clone for $Name<R> {
             #[inline]
             fn clone(&self) -> Self {
                 *self
             }
         }
-        impl<$($generics),*> Copy for $Name<$($generics),*> {}
-        impl<$($generics),*> fmt::Debug for $Name<$($generics),*> {
+        impl<R> Copy for $Name<R> {}
+        impl<R> fmt::Debug for $Name<R> {
             #[inline]
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 write!(f, "{}{}", $letter, self.name)
             }
         }
-        impl<$($generics),*> $Name<$($generics),*> {
+        impl<R> $Name<R> {
             /// Makes the number or mask that has this name.
             #[inline]
             #[must_use]
@@ -219,9 +222,9 @@ macro_rules! names {
         }
     )* };
 }
-names! { Traced [R, A] 'x'; TracedMask [R] 'm'; }
+names! { Traced 'x'; TracedMask 'm'; }
 
-impl<R: Recorder, A: Arithmetic> Traced<R, A> {
+impl<R: Recorder> Traced<R> {
     #[track_caller]
     fn op(op: Op, args: [u32; 3]) -> Self {
         Self::named(R::record(op, args, Location::caller()))
@@ -240,15 +243,15 @@ impl<R: Recorder> TracedMask<R> {
     }
 }
 
-impl<R: Recorder, A: Arithmetic> Sealed for Traced<R, A> {}
-impl<R: Recorder, A: Arithmetic> Scalar for Traced<R, A> {
+impl<R: Recorder> Sealed for Traced<R> {}
+impl<R: Recorder> Scalar for Traced<R> {
     type Table = Entries<Self>;
 }
-impl<R: Recorder, A: Arithmetic> Schedule for Traced<R, A> {}
+impl<R: Recorder> Schedule for Traced<R> {}
 
 macro_rules! binary {
     ($($Op:ident $op:ident;)*) => { $(
-        impl<R: Recorder, A: Arithmetic> $Op for Traced<R, A> {
+        impl<R: Recorder> $Op for Traced<R> {
             type Output = Self;
             #[inline]
             #[track_caller]
@@ -263,7 +266,7 @@ binary! { Add add; Sub sub; Mul mul; Div div; }
 /// Arithmetic with one number for all lanes, like that of other lanes except for the line that is recorded.
 macro_rules! by_number {
     ($($Op:ident $op:ident;)*) => { $(
-        impl<R: Recorder, A: Arithmetic> $Op<f32> for Traced<R, A> {
+        impl<R: Recorder> $Op<f32> for Traced<R> {
             type Output = Self;
             #[inline]
             #[track_caller]
@@ -275,7 +278,7 @@ macro_rules! by_number {
 }
 by_number! { Add add; Sub sub; Mul mul; }
 
-impl<R: Recorder, A: Arithmetic> Neg for Traced<R, A> {
+impl<R: Recorder> Neg for Traced<R> {
     type Output = Self;
     #[inline]
     #[track_caller]
@@ -284,13 +287,16 @@ impl<R: Recorder, A: Arithmetic> Neg for Traced<R, A> {
     }
 }
 
-impl<R: Recorder, A: Arithmetic> Lanes for Traced<R, A> {
+impl<R: Recorder> Lanes for Traced<R> {
     type Mask = TracedMask<R>;
     /// Masks of the lanes whose number is at least each of the three bounds.
     type Index = [TracedMask<R>; 3];
     type Stored = Self;
-    const FUSES: bool = A::FUSES;
 
+    #[inline]
+    fn fuses() -> bool {
+        R::target().fuses()
+    }
     #[inline]
     #[track_caller]
     fn splat(x: f32) -> Self {
@@ -307,7 +313,7 @@ impl<R: Recorder, A: Arithmetic> Lanes for Traced<R, A> {
     #[inline]
     #[track_caller]
     fn mul_add(self, a: Self, b: Self) -> Self {
-        if A::FUSES {
+        if Self::fuses() {
             Self::op(Op::MulAdd, [self.name, a.name, b.name])
         } else {
             self * a + b
@@ -316,7 +322,7 @@ impl<R: Recorder, A: Arithmetic> Lanes for Traced<R, A> {
     #[inline]
     #[track_caller]
     fn mul_sub(self, a: Self, b: Self) -> Self {
-        if A::FUSES {
+        if Self::fuses() {
             self.mul_add(a, -b)
         } else {
             self * a - b
@@ -325,7 +331,7 @@ impl<R: Recorder, A: Arithmetic> Lanes for Traced<R, A> {
     #[inline]
     #[track_caller]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
-        if A::ROUNDS_ONCE {
+        if R::target().rounds_once() {
             difference_fused(a, b, c, d)
         } else {
             difference_split([a, b, c, d], [a, b, c, d].map(Self::halves))
@@ -334,12 +340,14 @@ impl<R: Recorder, A: Arithmetic> Lanes for Traced<R, A> {
     #[inline]
     #[track_caller]
     fn native_exp2(self) -> Option<Self> {
-        A::NATIVE.then(|| Self::op(Op::Exp2, [self.name, 0, 0]))
+        let is_native = R::target().is_native();
+        is_native.then(|| Self::op(Op::Exp2, [self.name, 0, 0]))
     }
     #[inline]
     #[track_caller]
     fn native_log2(self) -> Option<Self> {
-        A::NATIVE.then(|| Self::op(Op::Log2, [self.name, 0, 0]))
+        let is_native = R::target().is_native();
+        is_native.then(|| Self::op(Op::Log2, [self.name, 0, 0]))
     }
     #[inline]
     fn stage(sentence: &'static str) {
@@ -420,12 +428,12 @@ impl<R: Recorder, A: Arithmetic> Lanes for Traced<R, A> {
     }
 }
 
-impl<R: Recorder, A: Arithmetic> Choice<Traced<R, A>> for [TracedMask<R>; 3] {
+impl<R: Recorder> Choice<Traced<R>> for [TracedMask<R>; 3] {
     #[inline]
     #[track_caller]
-    fn search(x: Traced<R, A>, bounds: [Traced<R, A>; 3], count: usize) -> Self {
+    fn search(x: Traced<R>, bounds: [Traced<R>; 3], count: usize) -> Self {
         // Never set: no number is at least NaN.
-        let none = Traced::<R, A>::splat(f32::NAN);
+        let none = Traced::<R>::splat(f32::NAN);
         let at = |i: usize| if i < count { bounds[i] } else { none };
         [at(0), at(1), at(2)].map(|bound| TracedMask::op(Op::AtLeast, x.name, bound.name))
     }
@@ -450,12 +458,12 @@ impl<R: Recorder, A: Arithmetic> Choice<Traced<R, A>> for [TracedMask<R>; 3] {
     }
     #[inline]
     #[track_caller]
-    fn to_number(self) -> Traced<R, A> {
+    fn to_number(self) -> Traced<R> {
         self.choose([0.0, 1.0, 2.0, 3.0].map(Traced::splat))
     }
 }
 
-impl<R: Recorder, A: Arithmetic> Broadcast<Self> for Traced<R, A> {
+impl<R: Recorder> Broadcast<Self> for Traced<R> {
     #[inline]
     fn lanes(&self) -> Self {
         *self

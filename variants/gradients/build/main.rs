@@ -166,10 +166,7 @@ fn body(fused: &[String], exact: &[String]) -> String {
         }
         calls
     });
-    let _ = writeln!(
-        out,
-        "if const {{ L::FUSES }} {{\n{fused}}} else {{\n{exact}}}"
-    );
+    let _ = writeln!(out, "if L::fuses() {{\n{fused}}} else {{\n{exact}}}");
     out
 }
 

@@ -1,17 +1,4 @@
-//! Targets that a program is traced for, and the calls that become its functions.
-
-/// Arithmetic of the target: how products with sums round, and whose exponentials are used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Target {
-    /// Products and sums round separately, with the bits of one lane.
-    Exact,
-    /// Products with sums round once, with the bits of a level that fuses.
-    Fused,
-    /// Products with sums may round once or twice, as WGSL allows for its `fma`.
-    Gpu,
-    /// Like [`Gpu`](Self::Gpu), but with the `exp2` and `log2` of the target.
-    GpuNative,
-}
+//! Calls of a model that become functions of its program.
 
 /// Function of a model that a program provides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

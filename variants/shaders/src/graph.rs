@@ -1,8 +1,8 @@
 //! Graph recorded while a model is traced: operations in the order of their computation, each recorded once.
 
-use core::cell::RefCell;
+use core::cell::{Cell, RefCell};
 use core::panic::Location;
-use hairis::simd::trace::{Arithmetic, Op, Recorder, Traced};
+use hairis::simd::trace::{Op, Recorder, Target, Traced};
 use std::collections::HashMap;
 
 /// Kind of a node: an argument, an operation, or a constant mask.
@@ -342,6 +342,7 @@ impl Graph {
 
 thread_local! {
     static GRAPH: RefCell<Graph> = RefCell::default();
+    static TARGET: Cell<Target> = const { Cell::new(Target::Exact) };
 }
 
 /// Recorder of operations into the graph of this thread.
@@ -349,6 +350,9 @@ thread_local! {
 pub(crate) enum Tape {}
 
 impl Recorder for Tape {
+    fn target() -> Target {
+        TARGET.get()
+    }
     fn record(op: Op, args: [u32; 3], at: &'static Location<'static>) -> u32 {
         GRAPH.with_borrow_mut(|graph| graph.op(op, args, Some(at)))
     }
@@ -357,18 +361,19 @@ impl Recorder for Tape {
     }
 }
 
-/// Lane that records operations, for a target of the arithmetic `A`.
-pub(crate) type Lane<A> = Traced<Tape, A>;
+/// Lane that records operations for the target of [`record`].
+pub(crate) type Lane = Traced<Tape>;
 
 /// Adds the next argument of the function that is being recorded.
-pub(crate) fn input<A: Arithmetic>(next: &mut u32) -> Lane<A> {
+pub(crate) fn input(next: &mut u32) -> Lane {
     let place = *next;
     *next += 1;
     Lane::named(GRAPH.with_borrow_mut(|graph| graph.input(place)))
 }
 
-/// Records the operations of `body`. Returns the graph, and the result of `body`.
-pub(crate) fn record<T>(body: impl FnOnce() -> T) -> (Graph, T) {
+/// Records the operations of `body` for a target. Returns the graph, and the result of `body`.
+pub(crate) fn record<T>(target: Target, body: impl FnOnce() -> T) -> (Graph, T) {
+    TARGET.set(target);
     GRAPH.set(Graph::default());
     let result = body();
     (GRAPH.take(), result)

@@ -32,9 +32,10 @@ mod record;
 #[cfg(feature = "spirv")]
 pub mod spirv;
 
-pub use call::{Call, Target};
+pub use call::Call;
 pub use function::{Argument, Function};
 pub use graph::{Graph, Kind, Node, Origin, Rounding};
+pub use hairis::simd::trace::Target;
 pub use material::parameters;
 pub use print::{Language, driver, print};
 pub use program::Program;

@@ -6,7 +6,7 @@ use crate::graph::{Lane, input, record};
 use crate::record::{Field, Record, Shape, numbers};
 use hairis::model::Single;
 use hairis::simd::Lanes;
-use hairis::simd::trace::Arithmetic;
+use hairis::simd::trace::Target;
 use hairis_variants::{Kind, Parameters, Registered, Values};
 
 /// Returns the fields that have a value, with their places. A field without a value may be an alternative to one of these.
@@ -55,9 +55,9 @@ pub fn parameters(values: &Values) -> Vec<f32> {
 }
 
 /// Traces [`Call::Material`] of a model of the list.
-pub(crate) fn material<M: Registered, A: Arithmetic>(output: &Record) -> Function {
+pub(crate) fn material<M: Registered>(target: Target, output: &Record) -> Function {
     let params = params::<M::Params>();
-    let (graph, results) = record(|| {
+    let (graph, results) = record(target, || {
         let defaults = M::Params::default().values();
         let slots = defaults.fields().iter().enumerate();
         let slots = slots.flat_map(|(place, field)| {
@@ -67,10 +67,10 @@ pub(crate) fn material<M: Registered, A: Arithmetic>(output: &Record) -> Functio
         let next = &mut 0;
         let values = defaults.map(|_| match is_read.next() {
             Some(true) => input(next),
-            _ => Lane::<A>::splat(0.0),
+            _ => Lane::splat(0.0),
         });
-        Lane::<A>::stage("words among the parameters");
-        let material = M::constants::<Single<Lane<A>>>(&values);
+        Lane::stage("words among the parameters");
+        let material = M::constants::<Single<Lane>>(&values);
         let numbers = numbers(&material).into_iter();
         numbers.map(Lane::name).collect::<Vec<_>>()
     });

@@ -1,6 +1,6 @@
 //! Programs: all functions of a model, with the records that they take and return.
 
-use crate::call::{Call, Target};
+use crate::call::Call;
 use crate::function::{Argument, Function};
 use crate::graph::{Graph, Lane, input, record};
 use crate::material::{material, parameters, params};
@@ -8,7 +8,7 @@ use crate::record::{Field, Record, Shape, numbers};
 use hairis::Eval;
 use hairis::Hit;
 use hairis::model::{Model, SampleLanes};
-use hairis::simd::trace::{Arithmetic, Exact, Fused, Gpu, GpuNative, Op};
+use hairis::simd::trace::{Op, Target};
 use hairis::simd::{LaneStruct, Lanes, Path, Vec3x};
 use hairis_variants::{ModelId, Parameters, Registered, Visitor};
 
@@ -37,12 +37,7 @@ impl Program {
             name = format!("{name}_{}", word.replace('-', "_"));
         }
         let mut program = Self::trace::<M>(&name, target);
-        let material = match target {
-            Target::Exact => material::<M, Exact>(&program.material),
-            Target::Fused => material::<M, Fused>(&program.material),
-            Target::Gpu => material::<M, Gpu>(&program.material),
-            Target::GpuNative => material::<M, GpuNative>(&program.material),
-        };
+        let material = material::<M>(target, &program.material);
         program.functions.insert(0, material);
         let params = params::<M::Params>();
         for (name, preset) in M::Params::PRESETS {
@@ -72,26 +67,17 @@ impl Program {
     /// Traces any model, under a name that is an identifier in C. The program has neither [`Call::Material`] nor presets.
     #[must_use]
     pub fn trace<M: Model>(name: &str, target: Target) -> Self {
-        match target {
-            Target::Exact => Self::record::<M, Exact>(name, target),
-            Target::Fused => Self::record::<M, Fused>(name, target),
-            Target::Gpu => Self::record::<M, Gpu>(name, target),
-            Target::GpuNative => Self::record::<M, GpuNative>(name, target),
-        }
-    }
-
-    fn record<M: Model, A: Arithmetic>(name: &str, target: Target) -> Self {
-        let (_, (material, prepared)) = record(|| {
+        let (_, (material, prepared)) = record(target, || {
             let next = &mut 0;
-            let material = lanes::<M::Material<Lane<A>>, A>(next);
-            let prepared = lanes::<M::Prepared<Lane<A>>, A>(next);
+            let material = lanes::<M::Material<Lane>>(next);
+            let prepared = lanes::<M::Prepared<Lane>>(next);
             (
                 Record::of("material", &material).0,
                 Record::of("prepared", &prepared).0,
             )
         });
         let calls = Call::ALL.into_iter().filter(|call| *call != Call::Material);
-        let functions = calls.map(|call| function::<M, A>(call, &material, &prepared));
+        let functions = calls.map(|call| function::<M>(target, call, &material, &prepared));
         let functions = functions.collect();
         Self {
             name: name.to_owned(),
@@ -206,15 +192,15 @@ fn constants(name: String, record: &Record, numbers: &[f32]) -> Function {
 }
 
 /// Makes a struct of lanes whose numbers are the next arguments.
-fn lanes<S: LaneStruct<Number = Lane<A>>, A: Arithmetic>(next: &mut u32) -> S {
+fn lanes<S: LaneStruct<Number = Lane>>(next: &mut u32) -> S {
     S::make(&Path::Root, &mut |_| input(next))
 }
 
-fn three<A: Arithmetic>(next: &mut u32) -> [Lane<A>; 3] {
+fn three(next: &mut u32) -> [Lane; 3] {
     [input(next), input(next), input(next)]
 }
 
-fn vector<A: Arithmetic>(next: &mut u32) -> Vec3x<Lane<A>> {
+fn vector(next: &mut u32) -> Vec3x<Lane> {
     let [x, y, z] = three(next);
     Vec3x::new(x, y, z)
 }
@@ -228,12 +214,12 @@ const SAMPLE: [(&str, Shape); 5] = [
     ("slot", Shape::Number),
 ];
 
-fn eval<A: Arithmetic>(eval: Eval<Lane<A>>) -> Vec<Lane<A>> {
+fn eval(eval: Eval<Lane>) -> Vec<Lane> {
     let [r, g, b] = eval.value;
     vec![r, g, b, eval.pdf]
 }
 
-fn sample<A: Arithmetic>(sample: SampleLanes<Lane<A>>) -> Vec<Lane<A>> {
+fn sample(sample: SampleLanes<Lane>) -> Vec<Lane> {
     let ([r, g, b], [wr, wg, wb], wi) = (sample.value, sample.weight, sample.wi);
     vec![
         wi.x,
@@ -280,8 +266,13 @@ fn output<M: Model>(call: Call, prepared: &Record) -> Record {
     }
 }
 
-fn function<M: Model, A: Arithmetic>(call: Call, material: &Record, prepared: &Record) -> Function {
-    type Prepared<M, A> = <M as Model>::Prepared<Lane<A>>;
+fn function<M: Model>(
+    target: Target,
+    call: Call,
+    material: &Record,
+    prepared: &Record,
+) -> Function {
+    type Prepared<M> = <M as Model>::Prepared<Lane>;
     let is_prepared = matches!(call, Call::Eval | Call::Sample | Call::Lobes);
     let (has_wi, has_xi) = (
         matches!(
@@ -301,16 +292,16 @@ fn function<M: Model, A: Arithmetic>(call: Call, material: &Record, prepared: &R
             h,
         ]
     };
-    let (graph, results) = record(|| {
+    let (graph, results) = record(target, || {
         let next = &mut 0;
-        let point: Prepared<M, A> = if is_prepared {
+        let point: Prepared<M> = if is_prepared {
             lanes(next)
         } else {
-            let material: M::Material<Lane<A>> = lanes(next);
+            let material: M::Material<Lane> = lanes(next);
             let wo = vector(next);
-            Lane::<A>::stage("h, at most 1 from the axis");
+            Lane::stage("h, at most 1 from the axis");
             let hit = Hit::new(wo, input(next));
-            M::prepare::<Lane<A>, Lane<A>>(&material, hit)
+            M::prepare::<Lane, Lane>(&material, hit)
         };
         let mut results = Vec::new();
         if call == Call::Prepare {
@@ -319,17 +310,17 @@ fn function<M: Model, A: Arithmetic>(call: Call, material: &Record, prepared: &R
         if has_wi {
             let wi = vector(next);
             if call == Call::Lobes {
-                let lobes = &M::lobes::<Lane<A>, Lane<A>>(&point, wi).0[..M::LOBES.len()];
+                let lobes = &M::lobes::<Lane, Lane>(&point, wi).0[..M::LOBES.len()];
                 results.extend(lobes.iter().map(|lobe| lobe.value));
                 results.extend(lobes.iter().flat_map(|lobe| lobe.color));
                 results.extend(lobes.iter().map(|lobe| lobe.pdf));
             } else {
-                results.extend(eval(M::eval::<Lane<A>, Lane<A>>(&point, wi)));
+                results.extend(eval(M::eval::<Lane, Lane>(&point, wi)));
             }
         }
         if has_xi {
             let xi = three(next);
-            results.extend(sample(M::sample::<Lane<A>, Lane<A>>(&point, xi)));
+            results.extend(sample(M::sample::<Lane, Lane>(&point, xi)));
         }
         results.into_iter().map(Lane::name).collect::<Vec<_>>()
     });
@@ -437,11 +428,11 @@ mod tests {
     /// not.
     #[test]
     fn differences_of_products_survive_split_fma() {
-        fn difference<A: Arithmetic>(factors: [f32; 4], rounding: Rounding) -> f32 {
-            let (graph, result) = record(|| {
+        fn difference(target: Target, factors: [f32; 4], rounding: Rounding) -> f32 {
+            let (graph, result) = record(target, || {
                 let next = &mut 0;
-                let [a, b, c] = three::<A>(next);
-                Lane::<A>::difference_of_products(a, b, c, input(next)).name()
+                let [a, b, c] = three(next);
+                Lane::difference_of_products(a, b, c, input(next)).name()
             });
             let output = Record::new("difference", &[("difference", Shape::Number)]);
             let name = "difference".to_owned();
@@ -451,9 +442,9 @@ mod tests {
         let [a, b, c, d] = factors.map(f64::from);
         let exact = a * b - c * d;
         let error = |got: f32| (f64::from(got) / exact - 1.0).abs();
-        assert!(error(difference::<Gpu>(factors, Rounding::Twice)) < 1e-6);
-        assert!(error(difference::<Gpu>(factors, Rounding::Once)) < 1e-6);
-        assert!(error(difference::<Fused>(factors, Rounding::Once)) < 1e-6);
-        assert!(error(difference::<Fused>(factors, Rounding::Twice)) > 0.1);
+        assert!(error(difference(Target::Gpu, factors, Rounding::Twice)) < 1e-6);
+        assert!(error(difference(Target::Gpu, factors, Rounding::Once)) < 1e-6);
+        assert!(error(difference(Target::Fused, factors, Rounding::Once)) < 1e-6);
+        assert!(error(difference(Target::Fused, factors, Rounding::Twice)) > 0.1);
     }
 }

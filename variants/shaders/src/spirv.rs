@@ -1,8 +1,8 @@
 //! SPIR-V modules, which can require that arithmetic keeps its order.
 
-use crate::call::Target;
 use crate::print::{Language, driver, print};
 use crate::program::Program;
+use hairis::simd::trace::Target;
 use naga::back::spv;
 use naga::front::wgsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};

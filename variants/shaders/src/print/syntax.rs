@@ -1,8 +1,8 @@
 //! Text before the functions of a program: comments, and helpers for the operations that a language lacks.
 
 use super::{Language, prefix};
-use crate::call::Target;
 use crate::program::Program;
+use hairis::simd::trace::Target;
 
 /// Names of types and functions that differ between the languages that look like C.
 const C: &str = "\
