@@ -53,10 +53,18 @@ impl<const BANDS: usize, const BY_CHANNEL: bool> FamilyModel for Bands<BANDS, BY
 }
 
 conformance!(hair, Family::<PublishedHair>::new());
-conformance!(matched_5, AsConserving(Family::<Bands<5>>::new()), but hits);
+conformance!(matched_5, AsConserving(Family::<Bands<5>>::new()), sampler);
 conformance!(matched_9, Family::<Bands<9>>::new());
-conformance!(matched_25, AsConserving(Family::<Bands<25>>::new()), but hits);
-conformance!(matched_by_channel, AsConserving(Family::<Bands<9, true>>::new()), but hits);
+conformance!(
+    matched_25,
+    AsConserving(Family::<Bands<25>>::new()),
+    sampler
+);
+conformance!(
+    matched_by_channel,
+    AsConserving(Family::<Bands<9, true>>::new()),
+    sampler
+);
 
 published!(published_sampler, crate::family::PublishedHair, published);
 published!(matched, crate::family::Bands<9>, matched);

@@ -77,11 +77,8 @@ impl Lanes for Avx2 {
     type Mask = __m256;
     type Index = Indices;
     type Stored = f32x8;
+    const FUSES: Option<bool> = Some(true);
 
-    #[inline(always)]
-    fn fuses() -> bool {
-        true
-    }
     #[inline(always)]
     fn splat(x: f32) -> Self {
         Self(avx2!(_mm256_set1_ps(x)))

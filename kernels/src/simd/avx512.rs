@@ -76,11 +76,8 @@ impl Lanes for Avx512 {
     type Index = Indices16;
     // Only columns run in sixteen lanes, which are not kept between calls.
     type Stored = Self;
+    const FUSES: Option<bool> = Some(true);
 
-    #[inline(always)]
-    fn fuses() -> bool {
-        true
-    }
     #[inline(always)]
     fn splat(x: f32) -> Self {
         Self(avx512!(_mm512_set1_ps(x)))

@@ -47,9 +47,15 @@ pub trait Lanes:
     type Index: Choice<Self>;
     /// Storage of the lanes between calls: `f32` for one, `wide::f32x8` for eight.
     type Stored: Broadcast<Self>;
-    /// Returns true if [`mul_add`](Self::mul_add) rounds once: a constant, except for lanes that record.
+    /// Value of [`fuses`](Self::fuses) where it is known when compiled: `None` for lanes that record.
+    const FUSES: Option<bool>;
+
+    /// Returns true if [`mul_add`](Self::mul_add) rounds once.
+    #[inline(always)]
     #[must_use]
-    fn fuses() -> bool;
+    fn fuses() -> bool {
+        matches!(Self::FUSES, Some(true))
+    }
     /// Repeats a number in every lane.
     fn splat(x: f32) -> Self;
     /// Returns the lanes in their storage form.

@@ -57,11 +57,8 @@ impl<L: Lanes> Lanes for Pair<L> {
     type Index = (L::Index, L::Index);
     // Only columns run in pairs, which are not kept between calls.
     type Stored = Self;
+    const FUSES: Option<bool> = L::FUSES;
 
-    #[inline(always)]
-    fn fuses() -> bool {
-        L::fuses()
-    }
     #[inline(always)]
     fn splat(x: f32) -> Self {
         let x = L::splat(x);

@@ -236,11 +236,8 @@ macro_rules! eight_lanes {
             /// Masks: the chosen number is at least each of the three bounds.
             type Index = [f32x8; 3];
             type Stored = f32x8;
+            const FUSES: Option<bool> = Some($fuses);
 
-            #[inline(always)]
-            fn fuses() -> bool {
-                $fuses
-            }
             #[inline(always)]
             fn splat(x: f32) -> Self {
                 Self::wrap(splat(x))
@@ -255,7 +252,7 @@ macro_rules! eight_lanes {
             }
             #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
-                if Self::fuses() {
+                if $fuses {
                     Self::wrap(self.unwrap().mul_add(a.unwrap(), b.unwrap()))
                 } else {
                     self * a + b
@@ -264,7 +261,7 @@ macro_rules! eight_lanes {
             // `wide` splats the sign that it negates with, at a cost (see `splat`).
             #[inline(always)]
             fn mul_sub(self, a: Self, b: Self) -> Self {
-                if Self::fuses() {
+                if $fuses {
                     Self::wrap(self.unwrap().mul_add(a.unwrap(), b.unwrap() ^ SIGN))
                 } else {
                     self * a - b
@@ -272,7 +269,7 @@ macro_rules! eight_lanes {
             }
             #[inline(always)]
             fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
-                if Self::fuses() {
+                if $fuses {
                     difference_fused(a, b, c, d)
                 } else {
                     difference_split([a, b, c, d], [split(a), split(b), split(c), split(d)])

@@ -65,11 +65,8 @@ impl Lanes for f32 {
     type Mask = bool;
     type Index = usize;
     type Stored = f32;
+    const FUSES: Option<bool> = Some(false);
 
-    #[inline(always)]
-    fn fuses() -> bool {
-        false
-    }
     #[inline(always)]
     fn splat(x: f32) -> Self {
         x

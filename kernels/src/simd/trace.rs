@@ -292,6 +292,7 @@ impl<R: Recorder> Lanes for Traced<R> {
     /// Masks of the lanes whose number is at least each of the three bounds.
     type Index = [TracedMask<R>; 3];
     type Stored = Self;
+    const FUSES: Option<bool> = None;
 
     #[inline]
     fn fuses() -> bool {

@@ -5,9 +5,10 @@ use crate::cases::inputs::Inputs;
 use crate::erased::{ErasedBsdf, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst, not_claimed};
 use crate::integral::Integral;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Samples};
 use crate::near::Nearby;
-use crate::probe::{Draws, cos_theta, hits, hits_and, triples};
+use crate::probe::{Draws, cos_theta, hits_and, some_hits, triples};
+use crate::size::cases;
 use core::cell::Cell;
 use hairis::simd::Level;
 use hairis::{Eval, LobeMask};
@@ -41,15 +42,16 @@ pub fn albedo_is_the_integral(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "albedo is the integral of S cos theta_i";
     let claims = subject.claims();
     let mut worst = Worst::new(NAME, "albedo (`Claims::albedo`)", claims.albedo);
+    let mut samples = Samples::default();
     for material in subject.set(Which::Everyday).iter() {
         let name = material.name();
-        for hit in hits() {
+        for hit in some_hits(material.index()) {
             let bsdf = material.prepare(hit);
             let albedo = bsdf.albedo();
             for lobe in subject.slots() {
                 let mask = LobeMask::of(&[lobe]);
                 let alone = bsdf.with_lobes(mask);
-                let mesh = Mesh::new(subject, material, &hit, &*alone, mask);
+                let mesh = Mesh::new(subject, material, &hit, &*alone, mask, &mut samples);
                 for c in 0..3 {
                     if c > 0 && albedo[lobe][c] == albedo[lobe][c - 1] {
                         continue;
@@ -95,10 +97,10 @@ pub fn white_furnace(subject: &dyn ErasedSubject) -> Outcome {
         "the integral of S cos theta_i (`Claims::furnace`, `Claims::integral`)",
         tolerance.max(subject.claims().integral),
     );
-    let mut draws = Draws(0xf00d);
+    let (mut draws, mut samples) = (Draws(0xf00d), Samples::default());
     for material in white.iter() {
         let name = material.name();
-        for hit in hits_and(100, &mut draws) {
+        for hit in hits_and(cases(100), &mut draws) {
             let albedo = material.prepare(hit).albedo().0;
             for c in 0..3 {
                 let sum: f64 = albedo.iter().map(|lobe| f64::from(lobe[c])).sum();
@@ -107,9 +109,9 @@ pub fn white_furnace(subject: &dyn ErasedSubject) -> Outcome {
                 });
             }
         }
-        for hit in hits() {
+        for hit in some_hits(material.index()) {
             let bsdf = material.prepare(hit);
-            let mesh = Mesh::new(subject, material, &hit, &*bsdf, LobeMask::ALL);
+            let mesh = Mesh::new(subject, material, &hit, &*bsdf, LobeMask::ALL, &mut samples);
             let sum = reflected(&*bsdf, &mesh, 0).total();
             integral.see((sum - 1.0).abs(), || format!("{sum}: {name} {hit:?}"));
         }

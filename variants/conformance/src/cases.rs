@@ -10,6 +10,7 @@ use crate::erased::{
 };
 use crate::failure::{Failure, Outcome, Worst};
 use crate::probe::{Draws, hits8, run_seed};
+use crate::size::cases;
 use crate::subject::{Claims, Subject};
 use hairis::simd::Level;
 use hairis::{Hit, LobeMask};
@@ -190,17 +191,8 @@ pub(crate) struct Property<'a> {
     pub(crate) inputs: Inputs,
     /// True if tolerances apply at these inputs.
     pub(crate) tolerances: bool,
-    /// Number of cases, which `HAIRIS_CASES` multiplies.
+    /// Number of cases with `HAIRIS_CASES=1`.
     pub(crate) cases: usize,
-}
-
-/// Returns the factor on the number of cases: the one in the environment, or 1.
-pub(crate) fn case_factor() -> u32 {
-    let text = std::env::var("HAIRIS_CASES").unwrap_or_else(|_| "1".to_owned());
-    match text.parse() {
-        Ok(factor) if factor > 0 => factor,
-        _ => panic!("HAIRIS_CASES must be a whole number of at least 1, got {text:?}"),
-    }
 }
 
 impl Property<'_> {
@@ -237,8 +229,7 @@ impl Property<'_> {
         let mut fresh = Draws(self.path.bytes().fold(0, |seed, byte| {
             Draws(seed ^ u64::from(byte) ^ run_seed()).bits()
         }));
-        let fresh =
-            core::iter::repeat_with(|| fresh.bits()).take(self.cases * case_factor() as usize);
+        let fresh = core::iter::repeat_with(|| fresh.bits()).take(cases(self.cases));
         let mut found: Option<(Failure, u64, _)> = None;
         for seed in kept.into_iter().chain(fresh) {
             let tree = new_tree(&strategy, seed);

@@ -202,6 +202,10 @@ pub(crate) struct NamedMaterial<'a> {
 }
 
 impl NamedMaterial<'_> {
+    pub(crate) const fn index(&self) -> usize {
+        self.index
+    }
+
     pub(crate) fn name(&self) -> &'static str {
         self.set.name(self.index)
     }

@@ -6,6 +6,7 @@ use crate::erased::{COLUMNS, Direction, MaterialSet, NamedMaterial};
 use crate::failure::{Failure, Outcome};
 use crate::lanes::{eval_bits, sample_bits};
 use crate::probe::{Draws, hits8, packet, triples};
+use crate::size::lengths;
 use crate::slices::{Room, UNTOUCHED};
 use hairis::Hit;
 use hairis::columns::{EvalColumns, HitColumns, HitsError, LengthError, SampleColumns};
@@ -38,7 +39,7 @@ pub fn hits_equal_packets(subject: &dyn HitsSubject) -> Outcome {
     let set = &*subject.hits();
     let materials: Vec<_> = (set as &dyn MaterialSet).iter().collect();
     for level in Level::available() {
-        for (len, one) in (0..=LONGEST).zip((0..materials.len()).cycle()) {
+        for (len, one) in lengths(LONGEST).zip((0..materials.len()).cycle()) {
             let rows: Vec<Row> = (0..len).map(|_| Row::new(&mut draws)).collect();
             let at = format!("{len} hits on {level}");
             let slices = Slices::new(&rows, len % 8, len % 3 != 1);

@@ -3,7 +3,7 @@
 use crate::erased::{Direction, ErasedBsdf, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::mesh::{Mesh, Samples};
-use crate::probe::{columns, hits, narrow, sobol};
+use crate::probe::{columns, narrow, sobol, some_hits};
 use hairis::simd::Level;
 
 /// Kronrod's extension of Gauss' rule of three points, from -1 to 1: node, weight, and Gauss' weight.
@@ -190,7 +190,7 @@ impl Rectangle {
 pub fn density_integrates_to_one(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "the density integrates to 1";
     let claims = subject.claims();
-    let points = columns(claims.points, sobol);
+    let (points, mut samples) = (columns(claims.points, sobol), Samples::default());
     let mut worst = Worst::new(NAME, "the integral (`Claims::integral`)", claims.integral);
     let mut discarded = Worst::new(
         NAME,
@@ -199,12 +199,12 @@ pub fn density_integrates_to_one(subject: &dyn ErasedSubject) -> Outcome {
     );
     for material in subject.set(Which::Everyday).iter() {
         let name = material.name();
-        for hit in hits() {
+        for hit in some_hits(material.index()) {
             let all = material.prepare(hit);
             for mask in subject.parts() {
                 let bsdf = all.with_lobes(mask);
                 let at = || format!("{name} {} {hit:?}", subject.lobes(mask));
-                let mesh = Mesh::new(subject, material, &hit, &*bsdf, mask);
+                let mesh = Mesh::new(subject, material, &hit, &*bsdf, mask, &mut samples);
                 let integral = Integral::density(&*bsdf, &mesh);
                 if integral.unresolved > claims.integral {
                     let message = format!(
@@ -214,7 +214,7 @@ pub fn density_integrates_to_one(subject: &dyn ErasedSubject) -> Outcome {
                     );
                     return Err(Failure::new(NAME, message));
                 }
-                let kept = Samples::draw(&*bsdf, points.clone()).kept();
+                let kept = samples.draw(&*bsdf, &points).kept();
                 let got = integral.total();
                 // A lobe without energy scatters nothing.
                 if got == 0.0 && kept == 0.0 {

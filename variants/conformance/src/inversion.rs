@@ -5,7 +5,7 @@ use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Outcome, Worst};
 use crate::integral::Integral;
 use crate::mesh::{Mesh, Samples};
-use crate::probe::{columns, hits, sobol};
+use crate::probe::{columns, sobol, some_hits};
 
 /// Factor on the tolerance for two dimensions, in which the points are less even than in one.
 const BOTH: f64 = 4.0;
@@ -20,7 +20,7 @@ const BOTH: f64 = 4.0;
 pub fn even_points_invert_density(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "even points invert the density";
     let claims = subject.claims();
-    let points = columns(claims.points, sobol);
+    let (points, mut samples) = (columns(claims.points, sobol), Samples::default());
     let mut worst = Worst::new(
         NAME,
         "the cdf of one angle (`Claims::inversion`)",
@@ -33,11 +33,11 @@ pub fn even_points_invert_density(subject: &dyn ErasedSubject) -> Outcome {
     );
     for material in subject.set(Which::Everyday).iter() {
         let name = material.name();
-        for hit in hits() {
+        for hit in some_hits(material.index()) {
             let all = material.prepare(hit);
             for mask in subject.parts() {
                 let bsdf = all.with_lobes(mask);
-                let mesh = Mesh::new(subject, material, &hit, &*bsdf, mask);
+                let mesh = Mesh::new(subject, material, &hit, &*bsdf, mask, &mut samples);
                 let [rows, width] = mesh.size();
                 // Share of the samples less the expected share.
                 let mut mass: Vec<f64> = Integral::density(&*bsdf, &mesh)
@@ -46,7 +46,7 @@ pub fn even_points_invert_density(subject: &dyn ErasedSubject) -> Outcome {
                     .map(|mass| -mass)
                     .collect();
                 let share = 1.0 / f64::from(claims.points);
-                for direction in Samples::draw(&*bsdf, points.clone()).live() {
+                for direction in samples.draw(&*bsdf, &points).live() {
                     let [i, j] = mesh.find(direction);
                     mass[i * width + j] += share;
                 }

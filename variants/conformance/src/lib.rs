@@ -100,8 +100,14 @@
 //! The tests of [`conformance!`] also keep the seed of the case in the file `proptest-regressions/conformance.txt` of the package under
 //! test, and run this case before all others. Add that file to the repository.
 //!
-//! Cases are the same in every run. The environment variable `HAIRIS_SEED`, a whole number, draws other cases, and `HAIRIS_CASES=10`
-//! draws ten times as many.
+//! Cases are the same in every run. The environment variable `HAIRIS_SEED`, a whole number, draws other cases.
+//!
+//! # Sizes
+//!
+//! Counts of cases are those of a run that checks every change, for example in CI: set `HAIRIS_CASES=1` there. Without the variable a run has
+//! a quarter of the cases, which a person waits for, and `HAIRIS_CASES=10` draws ten times as many. [`cases()`] applies it to tests of
+//! your own. The properties that integrate the density take two of seven hits per material in the usual size, slices have their shortest
+//! and their longest lengths, and statistical bounds follow from the number of samples.
 //!
 //! # Limits
 //!
@@ -134,6 +140,7 @@ pub mod published;
 pub mod reference;
 pub mod resampling;
 pub mod sampling;
+mod size;
 pub mod slices;
 pub mod speed;
 pub mod statistics;
@@ -147,64 +154,82 @@ pub use erased::hits::HitsSubject;
 pub use failure::{Failure, Outcome};
 pub use hairis_reference::{LobeAt, Reference, ReferenceSample};
 pub use proptest;
+pub use size::{cases, is_full, is_kept};
 pub use subject::{
     AnyMaterial, AsConserving, Claims, Expected, Materials, ParamsOf, Subject, Tolerance,
 };
 
 /// Declares a module with a `#[test]` for each property of a [`Subject`].
 ///
-/// The subject is an expression that captures no variables: a unit struct, or a constant. `but hits` after the subject leaves out slices
-/// of hits and resampling, which take the longest to compile. Use it for models that differ by a constant from a fully tested model.
+/// The subject is an expression that captures no variables: a unit struct, or a constant. A word after it leaves properties out:
+///
+/// - `but hits`: slices of hits and resampling, which take the longest to compile.
+/// - `sampler`: the same, for a model with another sampler for the values of a model with every test, such as one with other constants.
+///   Six properties depend on the sampler: density, chi-square, inversion, samples against evaluation, levels, and the reference. The
+///   others are ignored; `cargo test -- --include-ignored` runs them.
 #[macro_export]
 macro_rules! conformance {
     ($name:ident, $subject:expr) => {
-        $crate::conformance!(+$name, $subject, hits hits_equal_packets, resampling resampling_is_unbiased,);
+        $crate::conformance!(+[] $name, $subject, hits hits_equal_packets, resampling resampling_is_unbiased,);
     };
     ($name:ident, $subject:expr, but hits) => {
-        $crate::conformance!(+$name, $subject,);
+        $crate::conformance!(+[] $name, $subject,);
     };
-    (+$name:ident, $subject:expr, $($more:tt)*) => {
+    ($name:ident, $subject:expr, sampler) => {
+        $crate::conformance!(+[ignore = "tested on the model with the same values: --include-ignored runs it"] $name, $subject,);
+    };
+    (+$attribute:tt $name:ident, $subject:expr, $($more:tt)*) => {
         $crate::conformance!(
-            @$name, $subject,
-            totality results_are_finite,
-            environment any_rounding_is_finite,
-            environment everyday_input_raises_no_exception,
-            not_numbers inputs_that_are_no_numbers_are_black,
-            integral density_integrates_to_one,
-            chi_square samples_follow_density,
-            inversion even_points_invert_density,
-            sampling samples_agree_with_eval,
-            lanes lanes_equal_scalar,
-            lanes lanes_permute,
-            lanes levels_agree,
-            lanes lobes_and_albedo_equal_scalar,
-            slices slices_equal_packets,
-            lobes lobes_sum_to_value,
-            lobes masks_select_lobes,
-            bounds albedo_is_the_integral,
-            bounds white_furnace,
-            bounds weights_are_bounded,
-            bounds eval_is_reciprocal,
-            reference agrees_with_reference,
-            speed lanes_are_inlined,
-            $($more)*
+            @$attribute $name, $subject,
+            [
+                integral density_integrates_to_one,
+                chi_square samples_follow_density,
+                inversion even_points_invert_density,
+                sampling samples_agree_with_eval,
+                lanes levels_agree,
+                reference agrees_with_reference,
+            ]
+            [
+                totality results_are_finite,
+                environment any_rounding_is_finite,
+                environment everyday_input_raises_no_exception,
+                not_numbers inputs_that_are_no_numbers_are_black,
+                lanes lanes_equal_scalar,
+                lanes lanes_permute,
+                lanes lobes_and_albedo_equal_scalar,
+                slices slices_equal_packets,
+                lobes lobes_sum_to_value,
+                lobes masks_select_lobes,
+                bounds albedo_is_the_integral,
+                bounds white_furnace,
+                bounds weights_are_bounded,
+                bounds eval_is_reciprocal,
+                speed lanes_are_inlined,
+                $($more)*
+            ]
         );
     };
-    (@$name:ident, $subject:expr, $($module:ident $property:ident,)*) => {
+    (
+        @$attribute:tt $name:ident, $subject:expr,
+        [$($module:ident $property:ident,)*] [$($other_module:ident $other:ident,)*]
+    ) => {
         #[cfg(test)]
         mod $name {
             #[allow(unused_imports, reason = "the subject may be named by a path")]
             use super::*;
-            $(
-                #[test]
-                fn $property() {
-                    let (subject, package) = (&$subject, env!("CARGO_MANIFEST_DIR"));
-                    let subject = $crate::Replay::kept(subject, package, module_path!());
-                    if let Err(failure) = $crate::$module::$property(&subject) {
-                        panic!("{failure}");
-                    }
-                }
-            )*
+            $( $crate::conformance!(#[] $subject, $module $property); )*
+            $( $crate::conformance!(#$attribute $subject, $other_module $other); )*
+        }
+    };
+    (#[$($attribute:meta)?] $subject:expr, $module:ident $property:ident) => {
+        #[test]
+        $(#[$attribute])?
+        fn $property() {
+            let (subject, package) = (&$subject, env!("CARGO_MANIFEST_DIR"));
+            let subject = $crate::Replay::kept(subject, package, module_path!());
+            if let Err(failure) = $crate::$module::$property(&subject) {
+                panic!("{failure}");
+            }
         }
     };
 }

@@ -10,6 +10,7 @@ use crate::statistics::AngleEdges;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::simd::Level;
 use hairis::{Hit, LobeMask};
+use std::sync::OnceLock;
 
 /// Number of samples per lobe from which edges are taken.
 const SAMPLES: u32 = 4096;
@@ -29,19 +30,22 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
-    /// Makes a mesh for the density of a shading point with these lobes.
+    /// Makes a mesh for the density of a shading point with these lobes. `samples` is overwritten.
     pub(crate) fn new(
         subject: &dyn ErasedSubject,
         material: NamedMaterial<'_>,
         hit: &Hit,
         bsdf: &dyn ErasedBsdf,
         mask: LobeMask,
+        samples: &mut Samples,
     ) -> Self {
+        static POINTS: OnceLock<[Vec<f32>; 3]> = OnceLock::new();
+        let points = POINTS.get_or_init(|| columns(SAMPLES, sobol));
         let [mut theta, mut phi] = material.edges(hit);
         for lobe in subject.slots().filter(|lobe| mask.contains(*lobe)) {
             let alone = bsdf.with_lobes(LobeMask::of(&[lobe]));
-            let samples = Samples::draw(&*alone, columns(SAMPLES, sobol));
-            let drawn: Vec<[f64; 2]> = samples.live().map(angles).collect();
+            let live = samples.draw(&*alone, points).live();
+            let drawn: Vec<[f64; 2]> = live.map(angles).collect();
             theta.extend(quantiles(drawn.iter().map(|[theta, _]| *theta).collect()));
             phi.extend(quantiles(drawn.iter().map(|[_, phi]| *phi).collect()));
         }
@@ -62,24 +66,29 @@ impl Mesh {
     }
 }
 
-/// Samples of one shading point, by column.
+/// Samples of one shading point, by column. Their memory is kept from one shading point to the next: fresh columns of this size would take
+/// a page fault per page.
+#[derive(Default)]
 pub(crate) struct Samples {
     columns: [Vec<f32>; COLUMNS],
 }
 
 impl Samples {
-    /// Draws the samples that these numbers give.
-    pub(crate) fn draw(bsdf: &dyn ErasedBsdf, xi: [Vec<f32>; 3]) -> Self {
-        let mut columns: [Vec<f32>; COLUMNS] = core::array::from_fn(|_| vec![0.0; xi[0].len()]);
+    /// Draws the samples that these numbers give, in place of those before.
+    pub(crate) fn draw(&mut self, bsdf: &dyn ErasedBsdf, xi: &[Vec<f32>; 3]) -> &Self {
         let inputs = xi.each_ref().map(|column| &column[..]);
+        let columns = self.columns.each_mut().map(|column| {
+            column.resize(xi[0].len(), 0.0);
+            &mut column[..]
+        });
         let written = bsdf
             .with_level(Level::detect())
-            .sample_array(inputs, columns.each_mut().map(|c| &mut c[..]));
+            .sample_array(inputs, columns);
         assert!(
             written.is_ok(),
             "slices of one length are accepted: {written:?}"
         );
-        Self { columns }
+        self
     }
 
     /// Returns the share of the samples that were not discarded.

@@ -1,6 +1,7 @@
 //! Numbers, directions and hits at which models are tested, and their conversion to lanes.
 
 use crate::erased::Direction;
+use crate::size::cases;
 use core::f64::consts::PI;
 use hairis::simd::f32x8;
 use hairis::{Hit, Hit8, Lobe, LobeMask, Vec3x8};
@@ -167,6 +168,17 @@ pub(crate) fn hits() -> [Hit; 7] {
     })
 }
 
+/// Returns the hits at which a property integrates the density of a material: all of [`hits`] in CI's size, and two of them in the usual
+/// size, other ones for the next material.
+pub(crate) fn some_hits(material: usize) -> impl Iterator<Item = Hit> {
+    let all = hits();
+    let count = cases(all.len()).min(all.len());
+    let chosen = (0..count).map(|n| (material + n * all.len() / count) % all.len());
+    let chosen: Vec<usize> = chosen.collect();
+    let numbered = all.into_iter().enumerate();
+    numbered.filter_map(move |(n, hit)| chosen.contains(&n).then_some(hit))
+}
+
 /// Returns awkward hits, followed by `count` random ones.
 pub(crate) fn hits_and(count: usize, draws: &mut Draws) -> Vec<Hit> {
     hits()
@@ -236,14 +248,20 @@ pub(crate) fn sobol(n: u32) -> [f32; 3] {
 }
 
 /// Returns `count` triples by component.
-pub(crate) fn columns(count: u32, mut xi: impl FnMut(u32) -> [f32; 3]) -> [Vec<f32>; 3] {
+pub(crate) fn columns(count: u32, xi: impl FnMut(u32) -> [f32; 3]) -> [Vec<f32>; 3] {
     let mut columns = [const { Vec::new() }; 3];
+    fill(&mut columns, count, xi);
+    columns
+}
+
+/// Replaces columns by `count` triples.
+pub(crate) fn fill(columns: &mut [Vec<f32>; 3], count: u32, mut xi: impl FnMut(u32) -> [f32; 3]) {
+    columns.iter_mut().for_each(Vec::clear);
     for n in 0..count {
         for (column, x) in columns.iter_mut().zip(xi(n)) {
             column.push(x);
         }
     }
-    columns
 }
 
 #[cfg(test)]

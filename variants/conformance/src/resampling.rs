@@ -4,6 +4,7 @@ use crate::environment::{DOWN, with_mode};
 use crate::erased::{ErasedBsdf, ErasedBsdf8, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, hits8, packet, triples};
+use crate::size::cases;
 use core::f32::consts::PI;
 use glam::Vec3;
 use hairis::Hit;
@@ -12,7 +13,8 @@ use hairis::resample::{Counts, Partition, Pool, Reservoir8, Weighed8};
 use hairis::simd::{Level, f32x8};
 
 const NAME: &str = "resampling is unbiased";
-/// Number of estimates per cell, which is large enough to detect estimates that are two percent off, for any seed and number of levels.
+/// Number of estimates per cell with `HAIRIS_CASES=1`, which is large enough to detect estimates that are two percent off, for any seed and
+/// number of levels.
 const ESTIMATES: usize = 1280;
 /// Factor on the number of estimates with which a cell that is too far off is drawn again. Long tails put cells further apart than chance
 /// would, because the rarest estimates are missing from the mean and from its error. More estimates make a bias more visible.
@@ -278,10 +280,10 @@ pub fn check(subject: &dyn ErasedSubject, factor: f64) -> Outcome {
                         // Estimates without any spread, and hits that receive next to nothing, are left out.
                         (error > 1e-5 * b.abs() && b > 0.0).then(|| (factor * a - b) / error)
                     };
-                    let first = apart(ESTIMATES, draws);
+                    let first = apart(cases(ESTIMATES), draws);
                     let far = first.is_some_and(|z| z.abs() > ONE_IN_1000);
                     errors.extend(if far {
-                        apart(AGAIN * ESTIMATES, draws)
+                        apart(AGAIN * cases(ESTIMATES), draws)
                     } else {
                         first
                     });

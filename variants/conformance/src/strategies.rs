@@ -17,8 +17,8 @@
 //! # let _ = any_fiber();
 //! ```
 
-use crate::cases::case_factor;
 use crate::probe::{narrow, run_seed};
+use crate::size;
 use crate::subject::AnyMaterial;
 use glam::Vec3;
 use hairis::HairParams;
@@ -28,14 +28,14 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use proptest::test_runner::RngSeed;
 
-/// Returns a configuration of `proptest` for the tests of a file. It runs `cases` cases, which are the same in every run, and keeps
+/// Returns a configuration of `proptest` for the tests of a file. It runs [`cases`](crate::cases()) of them, which are the same in every run, and keeps
 /// regressions beside the file, in `proptest-regressions`.
 ///
 /// The environment variables `HAIRIS_SEED` and `HAIRIS_CASES` apply.
 #[must_use]
-pub fn config(file: &'static str, cases: u32) -> ProptestConfig {
+pub fn config(file: &'static str, cases: usize) -> ProptestConfig {
     ProptestConfig {
-        cases: cases.saturating_mul(case_factor()),
+        cases: u32::try_from(size::cases(cases)).unwrap_or(u32::MAX),
         rng_seed: RngSeed::Fixed(run_seed()),
         source_file: Some(file),
         ..ProptestConfig::default()

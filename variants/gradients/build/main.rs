@@ -166,7 +166,10 @@ fn body(fused: &[String], exact: &[String]) -> String {
         }
         calls
     });
-    let _ = writeln!(out, "if L::fuses() {{\n{fused}}} else {{\n{exact}}}");
+    let _ = writeln!(
+        out,
+        "if const {{ L::FUSES.expect(\"lanes that compute\") }} {{\n{fused}}} else {{\n{exact}}}"
+    );
     out
 }
 

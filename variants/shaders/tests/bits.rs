@@ -1,12 +1,13 @@
 //! Tests that the graph has the bits of the model.
 
-use crate::support::{Case, case_count, differing, every_model, fusing_level};
+use crate::support::{Case, differing, every_model, fusing_level};
+use hairis_conformance::cases;
 use hairis_shaders::{Call, Program, Rounding, Target};
 use hairis_variants::{ModelId, Registered, Visitor};
 
 fn check_one_lane<M: Registered>() {
     let program = Program::of::<M>(Target::Exact);
-    let cases = Case::<M>::many(case_count(2048), 39);
+    let cases = Case::<M>::many(cases(2048), 39);
     for call in Call::ALL {
         let function = program.function(call);
         let (mut got, mut expected) = (Vec::new(), Vec::new());
@@ -42,7 +43,7 @@ fn check_fusing_level<M: Registered>() {
         return println!("this CPU has no level that fuses");
     };
     let program = Program::of::<M>(Target::Fused);
-    let cases = Case::<M>::many(case_count(2048), 40);
+    let cases = Case::<M>::many(cases(2048), 40);
     let function = program.function(Call::EvalSampleHit);
     let (eights, _) = cases.as_chunks::<8>();
     let (mut got, mut expected) = (Vec::new(), Vec::new());

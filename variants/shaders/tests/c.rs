@@ -1,9 +1,8 @@
 //! Tests that the header compiles without warnings as C and C++, and has the bits of one lane.
 
 use crate::gradients::Weighted;
-use crate::support::{
-    Case, case_count, differing, every_model, fusing_level, same, visit_every_model,
-};
+use crate::support::{Case, differing, every_model, fusing_level, same, visit_every_model};
+use hairis_conformance::cases;
 use hairis_shaders::{Call, Function, Language, Program, Rounding, Target, driver, print};
 use hairis_variants::{KajiyaKay, Parameters, Registered, Visitor};
 use std::fs;
@@ -126,6 +125,7 @@ fn differences<M: Registered>(program: &Program, binary: &Path, cases: &[Case<M>
 struct Bits {
     compiler: &'static str,
     flags: &'static [&'static str],
+    count: usize,
 }
 
 impl Visitor for Bits {
@@ -136,34 +136,38 @@ impl Visitor for Bits {
         let dir = TempDir::new().expect("a folder for the program");
         let binary = compile(dir.path(), &source(&program), self.compiler, self.flags);
         let binary = binary.unwrap_or_else(|error| panic!("{}: {error}", program.name()));
-        let cases = Case::<M>::many(case_count(1024), 42);
+        let cases = Case::<M>::many(cases(self.count), 42);
         let differ = differences(&program, &binary, &cases);
         let name = program.name();
         assert_eq!(differ, 0, "{name} by {}: cases that differ", self.compiler);
     }
 }
 
-fn bits(compiler: &'static str, flags: &'static [&'static str]) {
+fn bits(compiler: &'static str, flags: &'static [&'static str], count: usize) {
     if exists(compiler) {
-        visit_every_model(Bits { compiler, flags });
+        visit_every_model(Bits {
+            compiler,
+            flags,
+            count,
+        });
     }
 }
 
 #[test]
 fn c_has_the_bits_of_one_lane() {
-    bits("gcc", &["-std=c99", "-O1"]);
+    bits("gcc", &["-std=c99", "-O1"], 1024);
 }
 
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn optimised_c_has_the_bits_of_one_lane() {
-    bits("gcc", &["-std=c99", "-O2"]);
+    bits("gcc", &["-std=c99", "-O2"], 4096);
 }
 
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn clang_has_the_bits_of_one_lane() {
-    bits("clang", &["-std=c99", "-O2"]);
+    bits("clang", &["-std=c99", "-O2"], 4096);
 }
 
 /// Clang contracts by default if the machine has fused instructions, but the pragma in the header forbids it.
@@ -171,7 +175,7 @@ fn clang_has_the_bits_of_one_lane() {
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn clang_keeps_products_and_sums_apart() {
     if fusing_level().is_some() && cfg!(target_arch = "x86_64") {
-        bits("clang", &["-O2", "-mfma"]);
+        bits("clang", &["-O2", "-mfma"], 4096);
     }
 }
 
@@ -179,7 +183,7 @@ fn clang_keeps_products_and_sums_apart() {
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn cpp_has_the_bits_of_one_lane() {
     for compiler in ["g++", "clang++"] {
-        bits(compiler, &["-std=c++17", "-O1", "-ffp-contract=off"]);
+        bits(compiler, &["-std=c++17", "-O1", "-ffp-contract=off"], 4096);
     }
 }
 

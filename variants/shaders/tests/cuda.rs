@@ -2,8 +2,9 @@
 
 use crate::c::{compile, exists, run, source};
 use crate::gradients::Weighted;
-use crate::support::{Case, Tally, case_count, fusing_level, unsigned, visit_every_model};
+use crate::support::{Case, Tally, fusing_level, unsigned, visit_every_model};
 use crate::vulkan::Doubles;
+use hairis_conformance::cases;
 use hairis_shaders::{Call, Function, Program, Rounding, Target};
 use hairis_variants::{Registered, Visitor};
 use std::path::PathBuf;
@@ -43,7 +44,7 @@ impl Visitor for Apart<'_> {
         let Self(target, tally) = self;
         let program = Program::of::<M>(target);
         let (_dir, binary) = compiled(&program, APART);
-        let cases = Case::<M>::many(case_count(4096), 51);
+        let cases = Case::<M>::many(cases(4096), 51);
         for call in Call::ALL {
             let function = program.function(call);
             let arguments = || cases.iter().map(|case| case.arguments(call));
@@ -103,7 +104,7 @@ impl Visitor for Accuracy {
     type Output = ();
 
     fn visit<M: Registered>(self) {
-        let cases = Case::<M>::many(case_count(4096), 53);
+        let cases = Case::<M>::many(cases(4096), 53);
         let exact = Doubles::new(&cases);
         for target in [Target::Exact, Target::Fused, Target::GpuNative] {
             let mut program = Program::of::<M>(target);

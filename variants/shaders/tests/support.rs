@@ -356,11 +356,3 @@ macro_rules! every_model {
     }};
 }
 pub(crate) use every_model;
-
-/// Returns the number of cases per model: `HAIRIS_CASES` if it is set, else `usual`.
-pub(crate) fn case_count(usual: usize) -> usize {
-    let told = std::env::var("HAIRIS_CASES");
-    told.map_or(usual, |count| {
-        count.parse().expect("HAIRIS_CASES is a count")
-    })
-}

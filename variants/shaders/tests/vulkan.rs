@@ -3,7 +3,8 @@
 
 use crate::gradients::Weighted;
 use crate::languages::{compile_glsl, tool, write_words};
-use crate::support::{Case, Tally, case_count, unsigned, visit_every_model};
+use crate::support::{Case, Tally, unsigned, visit_every_model};
+use hairis_conformance::cases;
 use hairis_shaders::driver as shader_driver;
 use hairis_shaders::{
     Call, Function, Language, Program, Rounding, Target, every_operation, print, spirv,
@@ -167,7 +168,7 @@ impl Visitor for Kept<'_> {
         let Some(driver) = Driver::new(Host::Vulkan) else {
             return;
         };
-        let cases = Case::<M>::many(case_count(4096), 44);
+        let cases = Case::<M>::many(cases(4096), 44);
         let rounding = driver.rounding();
         for target in driver.kept() {
             let mut program = Program::of::<M>(target);
@@ -313,7 +314,7 @@ impl Visitor for Plain {
         let Some(driver) = Driver::new(self.0) else {
             return;
         };
-        let cases = Case::<M>::many(case_count(4096), 45);
+        let cases = Case::<M>::many(cases(4096), 45);
         let exact = Doubles::new(&cases);
         for target in [Target::Exact, Target::Gpu, Target::GpuNative] {
             let mut program = Program::of::<M>(target);

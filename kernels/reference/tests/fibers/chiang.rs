@@ -3,6 +3,7 @@
 use super::support::{DEG, LargestError, direction, points, rule, sum};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
+use hairis_conformance::is_kept;
 use hairis_reference::{
     ChiangFormulas, ChiangReference, Real, Reference, Selection, bessel_i0_scaled,
 };
@@ -231,10 +232,11 @@ fn clear_hair_returns_all_the_light() {
         (0.3, 1.0),
         (1.0, 0.7),
     ];
-    for ((beta_m, beta_n), theta_o) in cases
+    let places = cases
         .into_iter()
         .flat_map(|betas| [0.0, 60.0, -85.0].map(|t| (betas, t)))
-    {
+        .enumerate();
+    for (_, ((beta_m, beta_n), theta_o)) in places.filter(|(n, _)| is_kept(*n)) {
         for (h, tilt) in [(0.2, 2.0), (-0.97, -20.0)] {
             let p = clear(beta_m, beta_n, tilt);
             let fiber = prepare(&p, theta_o * DEG, h);

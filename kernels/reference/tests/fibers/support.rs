@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 use hairis::random;
 use hairis_conformance::published::quadrature::{self, POINTS};
-use hairis_conformance::statistics;
+use hairis_conformance::{cases, statistics};
 use hairis_reference::Reference;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -106,7 +106,7 @@ pub(crate) fn cdf_gap(
     worst
 }
 
-/// Probability that 200,000 samples of a fibre differ from its density as much as they do: chi-square over cells of
+/// Probability that random samples of a fibre differ from its density as much as they do: chi-square over cells of
 /// `theta_i` (panels of `rule`, joined to at least 4 degrees) and of the azimuth (15 degrees), cells under 5 pooled.
 pub(crate) fn chi_square(
     fiber: &impl Reference<f64>,
@@ -114,7 +114,7 @@ pub(crate) fn chi_square(
     phi_peaks: &[(f64, f64)],
 ) -> f64 {
     const SECTORS: usize = 24;
-    const COUNT: u32 = 200_000;
+    let count = cases(200_000);
     let sector = 2.0 * PI / SECTORS as f64;
     let mut ends: Vec<f64> = Vec::new();
     let mut expected: Vec<f64> = Vec::new();
@@ -136,12 +136,12 @@ pub(crate) fn chi_square(
             let mass = sum(panel, |t| {
                 t.cos() * sum(phi, |phi| fiber.pdf(direction(t, phi)))
             });
-            *cell += mass * f64::from(COUNT);
+            *cell += mass * count as f64;
         }
     }
     let mut observed = vec![0; expected.len()];
     let mut rng = ChaCha8Rng::seed_from_u64(0x5eed);
-    for _ in 0..COUNT {
+    for _ in 0..count {
         let drawn = fiber.sample(random::xi(&mut rng).map(f64::from));
         if drawn.lobe.is_none() {
             continue;

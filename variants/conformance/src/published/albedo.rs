@@ -5,6 +5,7 @@ use super::handles::Material;
 use super::quadrature::{integrate, panels};
 use super::support::{Draws, Kind, Point, direction, for_each_point, narrow, packet, parameters};
 use crate::comparison::LargestError;
+use crate::size::{cases, is_kept};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::params::HairDesc;
@@ -123,7 +124,7 @@ fn any_widths() -> Vec<HairParams> {
     let known = [small, bright, grazing].map(|desc| HairParams::new(&desc).unwrap());
     known
         .into_iter()
-        .chain((0..60).map(|_| draws.params(1e4)))
+        .chain((0..cases(60)).map(|_| draws.params(1e4)))
         .collect()
 }
 
@@ -226,9 +227,11 @@ pub fn albedo_of_any_width_is_the_integral(tested: &Tested) {
         let seen = any_inclinations()
             .chain([(FRAC_PI_2 - 1.495, -1.0)])
             .filter(|(off, _)| *off > 1e-5);
-        for at in seen {
+        for (turn, at) in seen.enumerate() {
             any_widths.iter().for_each(|params| see(params, at));
-            at_a_pole(off_pole(at).1).for_each(|params| see(&params, at));
+            let at_a_pole = at_a_pole(off_pole(at).1).enumerate();
+            let some = at_a_pole.filter(|(index, _)| is_kept(index + turn));
+            some.for_each(|(_, params)| see(&params, at));
         }
     }
     worst.check(
@@ -329,7 +332,7 @@ fn scanned(material: &Material<'_>, steps: u32) -> f32 {
 
 pub fn max_albedo_bounds_a_scan_ten_times_as_fine(tested: &Tested) {
     let mut draws = Draws(31);
-    let random: Vec<HairParams> = (0..24).map(|_| draws.params(10.0)).collect();
+    let random: Vec<HairParams> = (0..cases(24)).map(|_| draws.params(10.0)).collect();
     for (model, _) in tested.forms() {
         for params in HairParams::presets()
             .into_iter()
@@ -352,7 +355,7 @@ pub fn max_albedo_bounds_a_scan_ten_times_as_fine(tested: &Tested) {
 
 pub fn scaled_hair_returns_at_most_what_it_receives(tested: &Tested) {
     let mut draws = Draws(32);
-    let random: Vec<HairParams> = (0..24).map(|_| draws.params(10.0)).collect();
+    let random: Vec<HairParams> = (0..cases(24)).map(|_| draws.params(10.0)).collect();
     let mut scaled_down = 0;
     for (model, _) in tested.forms() {
         for params in HairParams::presets()
@@ -375,7 +378,7 @@ pub fn scaled_hair_returns_at_most_what_it_receives(tested: &Tested) {
         }
     }
     assert!(
-        scaled_down > 5,
+        scaled_down > cases(5).min(5),
         "only {scaled_down} materials needed a scale"
     );
 }

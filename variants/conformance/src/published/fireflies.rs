@@ -5,6 +5,7 @@ use super::Tested;
 use super::handles::Sampling;
 use super::support::{Draws, direction, double, lanes_of, narrow, parameters};
 use crate::comparison::LargestError;
+use crate::size::cases;
 use core::f64::consts::PI;
 use hairis::params::HairDesc;
 use hairis::{HairParams, Lobe, LobeMask};
@@ -73,7 +74,7 @@ fn scan_corners(tested: &Tested, bands: usize, worst: &mut LargestError) {
 /// Finds the largest ratio of a weight to its bound, and of a bound to the mean, of random hair.
 fn scan(tested: &Tested, bands: usize, worst: &mut LargestError, over_mean: &mut LargestError) {
     let mut draws = Draws(81);
-    for round in 0..16_000 {
+    for round in 0..cases(16_000) {
         let params = hair(|lo, hi| draws.scale(lo, hi));
         let theta_o = draws.sign() * MOST.min(draws.between(0.0, 100.0));
         let mask = if round % 4 == 0 {

@@ -3,6 +3,7 @@
 use super::Tested;
 use super::support::{Draws, Kind, Point, for_each_point, lanes_of, packet};
 use crate::comparison::{LargestError, relative};
+use crate::size::cases;
 use glam::Vec3;
 use hairis::Hit;
 use hairis::simd::Level;
@@ -11,7 +12,7 @@ use hairis::simd::Level;
 pub fn one_lane_never_fuses(tested: &Tested) {
     let model = tested.model();
     let mut draws = Draws(16);
-    for _ in 0..2000 {
+    for _ in 0..cases(2000) {
         let (params, wo) = (draws.params(1e3), draws.direction());
         let hit = Hit::from(wo);
         let [one, lane] = model.constants(&params, hit);
@@ -21,7 +22,7 @@ pub fn one_lane_never_fuses(tested: &Tested) {
 
 /// Returns directions where a lane is well conditioned: off the seam and off the axis.
 fn tame(point: &Point) -> Vec<Vec3> {
-    let mut all = point.directions(256);
+    let mut all = point.directions(cases(256));
     all.retain(|wi| {
         let [theta, phi] = super::support::angles(point.wo, *wi);
         theta.cos() > 0.05 && phi < 3.1

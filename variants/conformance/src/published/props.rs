@@ -4,6 +4,7 @@ use super::Tested;
 use super::handles::Material;
 use super::support::{Draws, angles, direction, lanes_of};
 use crate::comparison::{LargestError, relative};
+use crate::size::cases;
 use core::f64::consts::PI;
 use hairis::simd::Level;
 
@@ -11,7 +12,7 @@ pub fn a_sample_agrees_with_eval_and_pdf(tested: &Tested) {
     let mut worst = LargestError::default();
     let mut draws = Draws(53);
     for (model, factor) in tested.forms() {
-        for _ in 0..10_000 {
+        for _ in 0..cases(10_000) {
             let params = draws.params(10.0);
             let d = params.desc();
             let width = [d.beta[0], d.beta[1], d.beta[2], d.gamma_tt, d.gamma_g]

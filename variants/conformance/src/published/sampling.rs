@@ -4,6 +4,7 @@ use super::Tested;
 use super::support::{Draws, Kind, Point, angles, double, for_each_point, lanes_of};
 use crate::comparison::{LargestError, relative};
 use crate::probe::LAST;
+use crate::size::cases;
 use core::f64::consts::PI;
 use hairis::simd::Level;
 use hairis::{Lobe, LobeMask, Sample};
@@ -156,7 +157,7 @@ pub fn samples_of_narrow_lobes(tested: &Tested) {
     check(
         tested,
         Kind::Narrow,
-        256,
+        cases(256),
         tested.rows.narrow_sample,
         tested.rows.narrow_cdf,
     );
@@ -166,7 +167,7 @@ pub fn samples_of_wide_lobes(tested: &Tested) {
     check(
         tested,
         Kind::Wide,
-        256,
+        cases(256),
         tested.rows.wide_sample,
         tested.rows.wide_cdf,
     );

@@ -3,6 +3,7 @@
 use super::Tested;
 use super::support::{Kind, for_each_point, packet};
 use crate::comparison::{LargestError, relative};
+use crate::size::cases;
 use hairis::simd::Level;
 use hairis::{Eval, Lobe};
 
@@ -85,9 +86,9 @@ pub fn values_on_the_grid(tested: &Tested) {
 }
 
 pub fn values_of_narrow_lobes(tested: &Tested) {
-    check(tested, Kind::Narrow, 4096, tested.rows.narrow);
+    check(tested, Kind::Narrow, cases(4096), tested.rows.narrow);
 }
 
 pub fn values_of_wide_lobes(tested: &Tested) {
-    check(tested, Kind::Wide, 4096, tested.rows.wide);
+    check(tested, Kind::Wide, cases(4096), tested.rows.wide);
 }

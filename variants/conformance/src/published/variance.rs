@@ -5,6 +5,7 @@ use super::Tested;
 use super::handles::{Sampler, Sampling};
 use super::quadrature::{panels, rule};
 use super::support::{DEG, direction, double, grid_point, narrow, parameters};
+use crate::size::is_full;
 use core::array;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::{HairParams, Lobe, LobeMask, PerLobe};
@@ -216,20 +217,18 @@ pub fn variance_falls_by_what_is_promised(tested: &Tested) {
         &|params, theta_o| shares(tested, None, params, theta_o),
         &[],
     );
-    let gains = [5, 9, 25].map(|bands| {
+    for (bands, [v, gain_of_mean, least]) in [5, 9, 25].into_iter().zip(tested.rows.gain) {
+        // The figures are those of the whole grid. The usual size has them for the number of bands that `Matched` has without another.
+        if bands != 9 && !is_full() {
+            continue;
+        }
         let shares =
             |params: &HairParams, theta_o: f64| shares(tested, Some(bands), params, theta_o);
-        gain(
-            tested,
-            bands,
-            &published,
-            &over_grid(tested.sampler(Some(bands)), &shares, &jumps(tested, bands)),
-        )
-    });
-    for ((got, [v, gain, least]), bands) in gains.iter().zip(tested.rows.gain).zip([5, 9, 25]) {
+        let all = over_grid(tested.sampler(Some(bands)), &shares, &jumps(tested, bands));
+        let got = gain(tested, bands, &published, &all);
         assert!(
-            got[0] <= v && got[1] >= gain && got[2] >= least,
-            "{got:?}, not {v}, {gain}, {least}"
+            got[0] <= v && got[1] >= gain_of_mean && got[2] >= least,
+            "{got:?}, not {v}, {gain_of_mean}, {least}"
         );
         for (got, [stated, unit]) in got.iter().zip(tested.documented(bands)) {
             let off = (got - stated).abs();

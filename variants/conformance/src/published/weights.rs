@@ -18,6 +18,7 @@ use super::Tested;
 use super::handles::Material;
 use super::support::{Draws, angles, direction, double, lanes_of, oracle, parameters};
 use crate::comparison::LargestError;
+use crate::size::cases;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::params::HairDesc;
@@ -122,7 +123,7 @@ pub fn weights_are_below_their_bound(tested: &Tested) {
     let (mut worst, mut checked) = (LargestError::default(), 0);
     let mut draws = Draws(21);
     for (model, factor) in tested.forms() {
-        for round in 0..2000 {
+        for round in 0..cases(2000) {
             let params = material(&mut draws);
             let material = Material::new(model, &params);
             let wo = direction(draws.between(-1.57, 1.57), draws.between(-PI, PI));
@@ -150,7 +151,7 @@ pub fn weights_are_below_their_bound(tested: &Tested) {
         }
     }
     assert!(
-        checked > 300_000,
+        checked > cases(300_000),
         "only {checked} samples fell under the hypothesis"
     );
     worst.check("weight over its bound", tested.rows.weight_bound);
