@@ -65,6 +65,7 @@ fn chunk_mut(column: &mut [f32], at: usize) -> &mut [f32] {
 }
 
 impl Resample for dyn DynBsdf + '_ {
+    #[inline]
     fn propose_columns(&self, xi: [&[f32]; 3], mut wi: [&mut [f32]; 3]) -> Result<(), LengthError> {
         let len = xi[0].len();
         check_lengths3(len, XI, xi)?;
@@ -94,6 +95,7 @@ impl Resample for dyn DynBsdf + '_ {
         Ok(())
     }
 
+    #[inline]
     fn weigh_columns(
         &self,
         candidates: CandidateColumns<'_>,
