@@ -1,8 +1,8 @@
 //! Contenders of `hairis compare`: the formulas in scalar code, and the kernel on one lane, on eight lanes and in slices.
 //!
 //! Kernels at a prepared hit are those of the list of models, behind its run-time handles, because kernels of typed handles would be
-//! compiled once more here. The choice of the model is part of the time of each call: one or two nanoseconds. Only preparing and calls
-//! on hits are typed, because a handle of any model is copied as the largest of them, and has no calls on hits.
+//! compiled once more here. The choice of the model is part of the time of each call: one or two nanoseconds. Operations that prepare
+//! hits, and calls on hits, are typed: a BSDF of any model is copied with the size of the largest, and has no calls on hits.
 
 mod inputs;
 mod points;
@@ -235,20 +235,20 @@ impl Contenders {
     }
 }
 
-/// Material in three implementations: the kernel, behind a handle of any model, and the formulas with the libm crate and with std.
+/// Material in three implementations: the kernel, and the formulas with the libm crate and with std.
 struct Implementations<M: Formulas> {
-    material: AnyMaterial,
+    material: Material<M>,
     libm: M::Constants<f32>,
     std: M::Constants<Platform>,
 }
 
 impl<M: Formulas> Implementations<M> {
-    fn new(params: &M::Params) -> Result<Self, ParamError> {
-        Ok(Self {
-            material: ModelId::of::<M>().material(&params.values())?,
+    fn new(params: &M::Params) -> Self {
+        Self {
+            material: Material::new(&M::MODEL, params),
             libm: M::formulas(params),
             std: M::formulas(params),
-        })
+        }
     }
 
     /// Returns the formulas seen from `wo`, with the libm crate and with std.
@@ -261,10 +261,18 @@ impl<M: Formulas> Implementations<M> {
     }
 }
 
+/// Makes the material as hosts do that choose the model at run time.
+fn chosen<M: Formulas>(params: &M::Params) -> Result<AnyMaterial, ParamError> {
+    ModelId::of::<M>().material(&params.values())
+}
+
 fn prepare<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let params = &inputs.params[0];
-    let Implementations::<M> { libm, std, .. } = Implementations::new(params)?;
-    let material = Material::new(&M::MODEL, params);
+    let Implementations::<M> {
+        material,
+        libm,
+        std,
+    } = Implementations::new(params);
     let wo = arrays(&inputs.wo);
     let contenders = Contenders::new(
         task(&wo, move |wo| {
@@ -291,11 +299,8 @@ fn eval_pdf<M: Formulas>(
     every_way: bool,
 ) -> Entrants {
     let (wo, wi) = (inputs.wo[0], arrays(&inputs.wi));
-    let implementations = Implementations::<M>::new(params)?;
-    let ((libm, std), bsdf) = (
-        implementations.references(wo),
-        implementations.material.prepare(wo),
-    );
+    let (libm, std) = Implementations::<M>::new(params).references(wo);
+    let bsdf = chosen::<M>(params)?.prepare(wo);
     let slices = |len| {
         let wi = &wi;
         move |level| -> Box<dyn Pass> {
@@ -342,11 +347,8 @@ fn sample<M: Formulas>(
     every_way: bool,
 ) -> Entrants {
     let (wo, xi) = (inputs.wo[0], &inputs.xi);
-    let implementations = Implementations::<M>::new(params)?;
-    let ((libm, std), bsdf) = (
-        implementations.references(wo),
-        implementations.material.prepare(wo),
-    );
+    let (libm, std) = Implementations::<M>::new(params).references(wo);
+    let bsdf = chosen::<M>(params)?.prepare(wo);
     let slices = |len| {
         move |level| -> Box<dyn Pass> {
             let bsdf = bsdf.with_level(level);

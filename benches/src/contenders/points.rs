@@ -7,16 +7,14 @@ use super::{
 use crate::inputs::{arrays, joined, packets, pairs, xi_packets};
 use crate::platform::{Platform, platform};
 use crate::task::{Answer, Output, Pass, Several, Slices, task};
-use core::array::from_fn;
 use glam::Vec3;
 use hairis::columns::{
     EvalColumns, HitColumns, HitsError, LengthError, MaterialTable, SampleColumns,
 };
 use hairis::model::Model;
-use hairis::simd::{Level, f32x8};
-use hairis::{Conserving, Material, ParamError, Sample8};
+use hairis::simd::f32x8;
+use hairis::{Conserving, Material, Material8, Sample8};
 use hairis_reference::{Formulas, Reference};
-use hairis_variants::{AnyMaterial, AnyMaterial8};
 
 /// Packet of samples of which only the first `N` are answers.
 struct Leading<const N: usize>(Sample8);
@@ -47,14 +45,14 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
         material,
         libm,
         std,
-    } = Implementations::new(params)?;
+    } = Implementations::new(params);
     let (rows, _) = inputs.xi.as_chunks::<N>();
     let wo = &inputs.wo[..rows.len()];
     let in_turn = |i| i;
     let (eights, _) = rows.as_chunks::<8>();
     let by_sample: Vec<[[f32x8; 3]; N]> = eights
         .iter()
-        .map(|eight| from_fn(|k| xi_packets(&eight.map(|xi| xi[k]))[0]))
+        .map(|eight| core::array::from_fn(|k| xi_packets(&eight.map(|xi| xi[k]))[0]))
         .collect();
     // A packet holds the same sample of eight points, whereas the directions are in the order of the points.
     let place = |i: usize| (i / (8 * N) * 8 + i % 8) * N + i / 8 % N;
@@ -88,7 +86,7 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
             let mut padded = row.to_vec();
             padded.resize(8 * P, [0.5; 3]);
             let packets = xi_packets(&padded);
-            from_fn(|p| packets[p])
+            core::array::from_fn(|p| packets[p])
         };
         let packed: Vec<_> = rows.iter().map(packed).collect();
         contenders = contenders.levels(EIGHT_AT_ONE, |level| {
@@ -101,7 +99,8 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
         });
     } else {
         let rows = joined(&arrays(wo), &inputs.xi);
-        contenders = contenders.levels(HITS, |level| sample_hits(&rows, typed::<M>(params, level)));
+        contenders =
+            contenders.levels(HITS, |level| sample_hits(&rows, material.with_level(level)));
         if const { !M::CONSERVES } {
             let material = Material::new(&Conserving(M::MODEL), params);
             contenders = contenders.levels(CONSERVING_HITS, |level| {
@@ -111,11 +110,6 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
     }
     let points = truth::<M>(params, wo)?;
     Ok((contenders, Truth::of_samples(points, &inputs.xi)))
-}
-
-/// Makes a material of the type of its model, for calls on hits.
-fn typed<M: Formulas>(params: &M::Params, level: Level) -> Material<M> {
-    Material::new(&M::MODEL, params).with_level(level)
 }
 
 /// Evaluates rows of hits and directions on one material.
@@ -188,7 +182,7 @@ pub(super) fn eval<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
         material,
         libm,
         std,
-    } = Implementations::new(params)?;
+    } = Implementations::new(params);
     let both = pairs(&arrays(&inputs.wo), &arrays(&inputs.wi));
     let eights = pairs(&packets(&inputs.wo), &packets(&inputs.wi));
     let rows = joined(&arrays(&inputs.wo), &arrays(&inputs.wi));
@@ -207,7 +201,7 @@ pub(super) fn eval<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
         let material = material.with_level(level);
         task(&eights, move |(wo, wi)| material.prepare8(wo).eval_pdf8(wi))
     })
-    .levels(HITS, |level| eval_hits(&rows, typed::<M>(params, level)));
+    .levels(HITS, |level| eval_hits(&rows, material.with_level(level)));
     if const { !M::CONSERVES } {
         let material = Material::new(&Conserving(M::MODEL), params);
         contenders = contenders.levels(CONSERVING_HITS, |level| {
@@ -223,16 +217,12 @@ pub(super) fn eval<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
 /// Prepares shading points and draws one sample at each. Every lane has a material of its own, packed once, or before each call if
 /// `pack_each`.
 pub(super) fn mixed<M: Formulas>(inputs: &TimedInputs<M::Params>, pack_each: bool) -> Entrants {
-    let each: Vec<_> = inputs
-        .params
-        .iter()
-        .map(Implementations::<M>::new)
-        .collect::<Result<_, ParamError>>()?;
-    let (libm, std, materials) = (
-        from_fn::<_, 8, _>(|i| each[i].libm),
-        from_fn::<_, 8, _>(|i| each[i].std),
-        from_fn::<_, 8, _>(|i| each[i].material),
+    let each = inputs.params.each_ref().map(Implementations::<M>::new);
+    let (libm, std) = (
+        each.each_ref().map(|one| one.libm),
+        each.each_ref().map(|one| one.std),
     );
+    let materials = each.map(|one| one.material);
     let numbered: Vec<(usize, Vec3)> = inputs
         .wo
         .iter()
@@ -242,10 +232,7 @@ pub(super) fn mixed<M: Formulas>(inputs: &TimedInputs<M::Params>, pack_each: boo
     let numbered_arrays: Vec<(usize, [f32; 3])> =
         numbered.iter().map(|(i, wo)| (*i, wo.to_array())).collect();
     let eights = pairs(&packets(&inputs.wo), &xi_packets(&inputs.xi));
-    let pack = |materials: &[AnyMaterial; 8]| {
-        AnyMaterial8::pack(materials.each_ref()).expect("materials of one model")
-    };
-    let packed = pack(&materials);
+    let packed = Material8::pack(materials.each_ref());
     let rows = joined(&arrays(&inputs.wo), &inputs.xi);
     let mut contenders = Contenders::new(
         task(
@@ -267,7 +254,8 @@ pub(super) fn mixed<M: Formulas>(inputs: &TimedInputs<M::Params>, pack_each: boo
         if pack_each {
             let materials = materials.map(|material| material.with_level(level));
             task(&eights, move |(wo, xi)| {
-                pack(&materials).prepare8(wo).sample8(xi)
+                let packed = Material8::pack(materials.each_ref());
+                packed.prepare8(wo).sample8(xi)
             })
         } else {
             task(&eights, move |(wo, xi)| packed.prepare8(wo).sample8(xi))
@@ -275,8 +263,7 @@ pub(super) fn mixed<M: Formulas>(inputs: &TimedInputs<M::Params>, pack_each: boo
     });
     if !pack_each {
         contenders = contenders.levels(HITS, |level| {
-            let materials = inputs.params.each_ref();
-            sample_table(&rows, materials.map(|params| typed::<M>(params, level)))
+            sample_table(&rows, materials.map(|material| material.with_level(level)))
         });
         if const { !M::CONSERVES } {
             let materials = inputs

@@ -59,8 +59,8 @@ pub(super) fn speed(of: &Comparison, depth: Depth) -> Vec<Table> {
             .note(format!(
                 "{}. Medians over rounds in which all contenders run in turn; the ratio is formed within each round. The \
                  reference is the model's formulas in f32, a material's constants formed once: on the libm crate, and on the \
-                 platform's library by the methods of std. Ratios are to the faster of the two. Kernels are called behind handles of any \
-                 model, whose choice takes 1 to 2 ns of each call, except for `prepare` and slices of hits. Some of the 8 hairs, which are \
+                 platform's library by the methods of std. Ratios are to the faster of the two. Kernels at a prepared hit \
+                 are called behind handles of any model, whose choice takes 1 to 2 ns of each call. Some of the 8 hairs, which are \
                  drawn from all that is legal, may have lobes that `Conserving` integrates at every hit.",
                 of.machine.summary()
             ))

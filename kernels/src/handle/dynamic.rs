@@ -133,12 +133,12 @@ impl<M: Model> DynBsdf for Bsdf<M> {
     // methods.
     #[inline]
     fn eval_pdf(&self, wi: Vec3) -> Eval {
-        M::eval::<f32, f32>(&self.prepared, Vec3x::from(wi))
+        M::eval::<f32, f32>(&self.prepared, Vec3x::from(wi).alone())
     }
 
     #[inline]
     fn lobes(&self, wi: Vec3) -> PerLobe<LobeEval> {
-        M::lobes::<f32, f32>(&self.prepared, Vec3x::from(wi))
+        M::lobes::<f32, f32>(&self.prepared, Vec3x::from(wi).alone())
     }
 
     forward! { Bsdf:
