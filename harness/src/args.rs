@@ -90,7 +90,7 @@ pub enum CodePath {
 /// Flags of `hairis compare`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Compare {
-    /// A short run, of less than 40 seconds
+    /// A short run, of less than 20 seconds on two cores
     #[arg(long)]
     pub quick: bool,
     /// Seed of everything that is drawn; results but for the timings depend on it alone

@@ -49,7 +49,7 @@ pub struct Comparison {
 pub struct CompareSettings {
     /// Seed of everything that is drawn.
     pub seed: u64,
-    /// Whether to take a tenth of the samples, for a first look and for tests.
+    /// Whether to take a sixteenth of the samples, for a first look and for tests.
     pub quick: bool,
     /// Description of the environment light: a file, or the procedural sky.
     pub environment: String,
@@ -77,7 +77,7 @@ pub fn run(
     let costs = sample_costs(&Times::measure(seed, quick, None));
 
     progress("agreement", 0.0);
-    let agreement = agreement::run(seed, if quick { 4_000 } else { 40_000 })?;
+    let agreement = agreement::run(seed, if quick { 2_000 } else { 40_000 })?;
     progress("agreement", 1.0);
 
     let variance = EfficiencyConfig {

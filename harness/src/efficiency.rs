@@ -152,21 +152,21 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// Returns the numbers of samples of the command line: about 100 s of processor time, 50 s on two idle cores; if `quick`, about 18 s
-    /// and 9 s.
+    /// Returns the numbers of samples of the command line: about 100 s of processor time, 50 s on two idle cores; if `quick`, about 9 s
+    /// and 5 s.
     #[must_use]
     pub fn new(quick: bool) -> Self {
         let pick = |full: usize, short: usize| if quick { short } else { full };
         Self {
-            independent: pick(2_000_000, 250_000),
+            independent: pick(2_000_000, 125_000),
             correlated: 64,
-            randomisations: pick(4_096, 512),
-            mis: pick(500_000, 32_768),
-            sweep: pick(1_000_000, 65_536),
-            convergence: pick(256, 64),
+            randomisations: pick(4_096, 256),
+            mis: pick(500_000, 16_384),
+            sweep: pick(1_000_000, 32_768),
+            convergence: pick(256, 32),
             convergence_n: 4_096,
             quadrature_texels: pick(1024 * 512, 128 * 64),
-            reference_passes: pick(256, 64),
+            reference_passes: pick(256, 32),
         }
     }
 }

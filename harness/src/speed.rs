@@ -43,10 +43,10 @@ pub struct SpeedConfig {
 }
 
 impl SpeedConfig {
-    /// Returns settings for about twenty seconds, or for four if `quick`.
+    /// Returns settings for about twenty seconds, or for three if `quick`.
     pub(crate) const fn new(seed: u64, quick: bool) -> Self {
         Self {
-            seconds: if quick { 4.0 } else { 20.0 },
+            seconds: if quick { 3.0 } else { 20.0 },
             seed,
         }
     }

@@ -29,7 +29,7 @@ impl<'a> RaysConfig<'a> {
     /// Returns the settings of the command line; if `quick`, with fewer pools, passes and rounds.
     #[must_use]
     pub fn new(seed: u64, quick: bool, lights: impl Into<Lights<'a>>) -> Self {
-        let [pools, passes, rounds] = if quick { [256, 16, 9] } else { [4096, 64, 31] };
+        let [pools, passes, rounds] = if quick { [128, 8, 9] } else { [4096, 64, 31] };
         Self {
             seed,
             pools,
