@@ -53,13 +53,16 @@ impl<const BANDS: usize, const BY_CHANNEL: bool> FamilyModel for Bands<BANDS, BY
 }
 
 conformance!(hair, Family::<PublishedHair>::new());
+#[cfg(not(hairis_one))]
 conformance!(matched_5, AsConserving(Family::<Bands<5>>::new()), sampler);
 conformance!(matched_9, Family::<Bands<9>>::new());
+#[cfg(not(hairis_one))]
 conformance!(
     matched_25,
     AsConserving(Family::<Bands<25>>::new()),
     sampler
 );
+#[cfg(not(hairis_one))]
 conformance!(
     matched_by_channel,
     AsConserving(Family::<Bands<9, true>>::new()),
@@ -68,4 +71,5 @@ conformance!(
 
 published!(published_sampler, crate::family::PublishedHair, published);
 published!(matched, crate::family::Bands<9>, matched);
+#[cfg(not(hairis_one))]
 published!(by_channel, crate::family::Bands<9, true>, common);

@@ -11,6 +11,14 @@
 //! then choose the model at run time ([`ModelId`], [`AnyMaterial`]), and the harness and the benches include it.
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
+#![cfg_attr(
+    hairis_one,
+    allow(
+        unused_imports,
+        irrefutable_let_patterns,
+        reason = "other models are left out"
+    )
+)]
 
 #[cfg(all(test, not(all(feature = "any", feature = "serde"))))]
 compile_error!(

@@ -194,20 +194,86 @@ macro_rules! models {
 #[macro_export]
 macro_rules! for_each_model {
     ($callback:ident) => {
-        $crate::with_every_sampler! { $callback
+        $crate::chosen_models! { $callback }
+    };
+    // Adds the models of the first name to those so far.
+    (@ $callback:ident [gaussian $($names:tt)*] $($models:tt)*) => {
+        $crate::for_each_model! { @ $callback [$($names)*] $($models)*
             /// The published model with the published sampler.
             Gaussian: Published<Gaussian>;
             /// The published model with the matched sampler of nine bands.
             GaussianMatched: Matched<Gaussian>;
+        }
+    };
+    (@ $callback:ident [cauchy $($names:tt)*] $($models:tt)*) => {
+        $crate::for_each_model! { @ $callback [$($names)*] $($models)*
             /// The all-Cauchy variant with the published sampler.
             Cauchy: AllCauchy;
             /// The all-Cauchy variant with the matched sampler of nine bands.
             CauchyMatched: Matched<Cauchy>;
+        }
+    };
+    (@ $callback:ident [kajiya_kay $($names:tt)*] $($models:tt)*) => {
+        $crate::for_each_model! { @ $callback [$($names)*] $($models)*
             /// Kajiya and Kay's model.
             KajiyaKay: KajiyaKay;
+        }
+    };
+    (@ $callback:ident [chiang $($names:tt)*] $($models:tt)*) => {
+        $crate::for_each_model! { @ $callback [$($names)*] $($models)*
             /// The energy-conserving fibre, whose lobes are chosen by their mean attenuation over the channels.
             Chiang: Chiang;
         }
+    };
+    (@ $callback:ident [] $($models:tt)*) => {
+        $crate::with_every_sampler! { $callback $($models)* }
+    };
+}
+
+/// Calls `$callback!` with the whole list.
+#[cfg(not(hairis_one))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! chosen_models {
+    ($callback:ident) => {
+        $crate::for_each_model! { @ $callback [gaussian cauchy kajiya_kay chiang] }
+    };
+}
+
+// One model alone, for developers: see CONTRIBUTING.md.
+#[cfg(hairis_one = "gaussian")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! chosen_models {
+    ($callback:ident) => {
+        $crate::for_each_model! { @ $callback [gaussian] }
+    };
+}
+
+#[cfg(hairis_one = "cauchy")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! chosen_models {
+    ($callback:ident) => {
+        $crate::for_each_model! { @ $callback [cauchy] }
+    };
+}
+
+#[cfg(hairis_one = "kajiya-kay")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! chosen_models {
+    ($callback:ident) => {
+        $crate::for_each_model! { @ $callback [kajiya_kay] }
+    };
+}
+
+#[cfg(hairis_one = "chiang")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! chosen_models {
+    ($callback:ident) => {
+        $crate::for_each_model! { @ $callback [chiang] }
     };
 }
 

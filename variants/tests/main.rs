@@ -1,16 +1,34 @@
-//! Tests of the variants: one binary.
+//! Tests of the variants: one binary. With `--cfg hairis_one`, for developers, those of one model.
 #![allow(clippy::unwrap_used, reason = "a test may panic: that is how it fails")]
+#![cfg_attr(
+    hairis_one,
+    allow(
+        dead_code,
+        unused_imports,
+        reason = "tests of other models are left out"
+    )
+)]
 
+#[cfg(not(hairis_one))]
 mod accuracy;
+#[cfg(any(not(hairis_one), hairis_one = "cauchy"))]
 mod cauchy;
+#[cfg(any(not(hairis_one), hairis_one = "chiang"))]
 mod chiang;
+#[cfg(any(not(hairis_one), hairis_one = "cauchy"))]
 mod family;
+#[cfg(not(hairis_one))]
 mod json;
+#[cfg(any(not(hairis_one), hairis_one = "kajiya-kay"))]
 mod kajiya_kay;
+#[cfg(not(hairis_one))]
 mod lambert_fiber;
+#[cfg(not(hairis_one))]
 mod params;
+#[cfg(not(hairis_one))]
 mod registry;
 mod rows;
+#[cfg(not(hairis_one))]
 mod values;
 
 use hairis_conformance::published::support;

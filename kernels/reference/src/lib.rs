@@ -16,6 +16,10 @@
 //!
 //! - Conventions: those of [`hairis`]. `wo` is the paper's `omega_r`, `wi` its `omega_i`.
 //! - Numbers: [`Real`], with the elementary functions of `libm` unless the caller provides others.
+#![cfg_attr(
+    hairis_one,
+    allow(unused_imports, reason = "other models are left out")
+)]
 
 mod chiang;
 pub mod errata;
