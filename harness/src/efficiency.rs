@@ -41,19 +41,18 @@ mod measure;
 mod reference;
 mod result;
 mod run;
-#[cfg(test)]
-mod tests;
 
+pub use case::Case;
+pub use cells::recorded_v;
+pub use measure::{CellMoments, bias_z, is_tested, moments};
+pub use reference::{
+    ExactVariance, by_quadrature, exact_variance, of_environment, perfect_v, ray_v, stratified,
+};
 pub use result::{
     Check, ConvergencePoint, EfficiencyResult, EfficiencyRow, EfficiencySettings, MisRow,
     Reference, ReferenceMethod, ReferenceV, SweepRow, Technique,
 };
-pub use run::run;
-
-pub use case::Case;
-pub use measure::{bias_z, is_tested};
-pub use reference::{ExactVariance, by_quadrature, exact_variance, perfect_v, ray_v, stratified};
-pub use run::z_bound;
+pub use run::{check, run, z_bound};
 
 use crate::lights::Lights;
 use crate::sampler::Sampler;
@@ -114,6 +113,7 @@ pub struct SampleCosts {
 
 impl SampleCosts {
     /// Returns the time of a sample of `sampler` for `model`, in ns, or NaN for a sampler that is not compared.
+    #[must_use]
     pub fn ns(&self, model: ModelKind, sampler: Sampler) -> f64 {
         let each = match model {
             ModelKind::Gaussian => &self.gaussian,
@@ -123,7 +123,8 @@ impl SampleCosts {
     }
 
     /// Returns `1 / (V seconds)` of samples of relative variance `v`.
-    fn efficiency(&self, v: &Estimate, model: ModelKind, sampler: Sampler) -> Estimate {
+    #[must_use]
+    pub fn efficiency(&self, v: &Estimate, model: ModelKind, sampler: Sampler) -> Estimate {
         Estimate::exact(1e9).ratio(&v.scale(self.ns(model, sampler)))
     }
 }
@@ -221,6 +222,7 @@ pub fn with_beta(base: &HairParams, beta_r_deg: f32) -> Result<HairParams, Param
 }
 
 /// Returns the mean of a colour, on which all figures are based.
+#[must_use]
 pub fn intensity(rgb: [f64; 3]) -> f64 {
     (rgb[0] + rgb[1] + rgb[2]) / 3.0
 }

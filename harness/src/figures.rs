@@ -18,7 +18,8 @@ const WIDTHS: [f64; 3] = [5.0, 10.0, 20.0];
 /// Name of a bell, its value at a distance from the centre in units of the width, and its area between plus and minus as many widths.
 type Bell = (&'static str, fn(f64) -> f64, fn(f64) -> f64);
 
-const BELLS: [Bell; 2] = [
+/// Bells of the two models.
+pub const BELLS: [Bell; 2] = [
     (
         "Gaussian",
         |x| (-0.5 * x * x).exp(),
@@ -138,66 +139,4 @@ pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: &[[f32; 3]]) 
         xi.len()
     );
     Drawing::new("sample-distributions", maps, caption)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use hairis_instruments::markup::well_formed;
-    use hairis_instruments::sequence::{SequenceKind, XiSource as _};
-    use hairis_variants::Cauchy;
-
-    fn default_hair() -> HairParams {
-        HairParams::new(HairParams::bright().desc()).expect("the default is legal")
-    }
-
-    fn all() -> Vec<Drawing> {
-        let params = default_hair();
-        let theta_o = 20.0_f64.to_radians();
-        let mut numbers = SequenceKind::Halton.source(1, 0, 3, 2000);
-        let xi: Vec<[f32; 3]> = (0..2000).map(|_| numbers.next_xi_f32()).collect();
-        let samples = sample_distributions(&params, theta_o, &xi);
-        let [area, peak] = bells();
-        vec![
-            area,
-            peak,
-            samples,
-            polar(&params, theta_o, &[("Cauchy", Cauchy::PAPER)]),
-        ]
-    }
-
-    #[test]
-    fn bells_have_area_one() {
-        for (name, at, area) in BELLS {
-            for end in [0.5, 2.0, 9.0] {
-                let h = end / 2000.0;
-                let sum: f64 = (-2000..2000)
-                    .map(|i| h * at((f64::from(i) + 0.5) * h))
-                    .sum();
-                assert!(
-                    (sum - area(end)).abs() < 1e-6,
-                    "{name} to {end}: {sum} {}",
-                    area(end)
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn figures_are_drawings_of_moderate_size() {
-        for figure in all() {
-            well_formed(&figure.svg).expect("the drawing nests");
-            assert!(
-                !figure.svg.contains("NaN") && !figure.caption.is_empty(),
-                "{}",
-                figure.caption
-            );
-            assert!(
-                figure.svg.len() < 600_000,
-                "{} bytes: {}",
-                figure.svg.len(),
-                figure.caption
-            );
-        }
-    }
 }

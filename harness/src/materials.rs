@@ -28,7 +28,7 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// Offset of a ray from the fibre's axis, for models that read it.
-const OFFSET: f32 = 0.5;
+pub const OFFSET: f32 = 0.5;
 
 /// Name of perfect sampling in rows and reports; see [`variance`].
 pub const PERFECT: &str = "perfect";
@@ -144,7 +144,8 @@ impl NamedMaterial {
         }
     }
 
-    fn digest(&self) -> u64 {
+    /// Returns a number that materials of one model and the same parameters share.
+    pub fn digest(&self) -> u64 {
         let text = format!("{} {}", self.model.name(), values_json(&self.values));
         stream_id(&text.bytes().map(u64::from).collect::<Vec<_>>())
     }
@@ -206,7 +207,9 @@ impl NamedMaterial {
     }
 }
 
-fn viewer(theta_o_deg: f64) -> Vec3 {
+/// Returns the direction to a viewer at this inclination, in degrees.
+#[must_use]
+pub fn viewer(theta_o_deg: f64) -> Vec3 {
     fibre_direction(theta_o_deg.to_radians(), PHI_O_DEG.to_radians()).as_vec3()
 }
 
@@ -251,6 +254,7 @@ pub fn rows<'a>(
 }
 
 /// Returns the rows as columns: `material`, `model`, `theta_o_deg`, `sampler` and `light`, then the figures of a study.
+#[must_use]
 pub fn columns(rows: &[MaterialRow<'_>]) -> Columns {
     let text = |of: fn(&MaterialRow<'_>) -> String| rows.iter().map(of);
     let columns = Columns::default()
@@ -325,6 +329,7 @@ pub fn table(rows: &[MaterialRow<'_>]) -> Table {
 }
 
 /// Returns a line for each figure that cannot be right, by the rules of a study.
+#[must_use]
 pub fn failures(rows: &[MaterialRow<'_>]) -> Vec<String> {
     let checked = rows.iter().map(|row| {
         let [name, sampler, light] = row.key();
@@ -345,16 +350,20 @@ pub struct MaterialPose {
     pub material: MaterialKey,
     /// Inclination of the viewer, in degrees.
     pub theta_o_deg: f64,
-    rows: Vec<MaterialEntry>,
+    /// Figures: samplers outermost, then lights.
+    pub rows: Vec<MaterialEntry>,
 }
 
 /// Figures of a sampler under a light.
 #[derive(Clone, Debug, Serialize)]
-struct MaterialEntry {
-    sampler: String,
-    light: String,
+pub struct MaterialEntry {
+    /// Name of the sampler.
+    pub sampler: String,
+    /// Name of the light.
+    pub light: String,
+    /// Figures.
     #[serde(flatten)]
-    measured: Measured,
+    pub measured: Measured,
 }
 
 impl MaterialPose {
@@ -406,6 +415,3 @@ pub fn run(
     let found = Progress::new(poses.len(), progress).map(&poses, measure);
     found.into_iter().collect()
 }
-
-#[cfg(test)]
-mod tests;

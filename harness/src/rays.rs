@@ -26,20 +26,16 @@ mod measure;
 mod result;
 mod run;
 mod subject;
-#[cfg(test)]
-mod tests;
 mod times;
 
-pub use equal_time::{EqualTime, PRICES_US};
-pub use result::{OneRay, PoolFigures, RayFigures, RayPose, RayRow, RaysResult};
-pub use run::{RaysConfig, run};
-pub use subject::RaySubject;
-pub use times::RayTimes;
-
 pub use candidates::{LightBlocks, Lit, numbers};
-pub use measure::{Unoccluded, unoccluded};
+pub use equal_time::{EqualTime, PRICES_US};
+pub use measure::{Unoccluded, pose, unoccluded};
 pub use result::occluded;
-pub use times::measure as measure_times;
+pub use result::{OneRay, PoolFigures, RayFigures, RayPose, RayRow, RaysResult};
+pub use run::{RaysConfig, check, rows, run};
+pub use subject::RaySubject;
+pub use times::{RayTimes, measure as measure_times};
 
 #[cfg(doc)]
 use crate::efficiency::Check;
@@ -60,7 +56,7 @@ pub const HALF: f64 = 0.5;
 const MOST: usize = 32;
 
 /// Returns every pool with each number of rays from it, by place in [`SIZES`] and [`RAYS`], with no more rays than candidates.
-fn pools() -> impl Iterator<Item = (usize, usize)> {
+pub fn pools() -> impl Iterator<Item = (usize, usize)> {
     let pairs = (0..SIZES.len()).flat_map(|size| (0..RAYS.len()).map(move |rays| (size, rays)));
     pairs.filter(|&(size, rays)| RAYS[rays] <= 2 * SIZES[size])
 }

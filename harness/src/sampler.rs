@@ -55,6 +55,7 @@ impl Sampler {
     };
 
     /// Returns the name of the sampler in reports and in rows.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Uniform => "uniform",
@@ -66,6 +67,7 @@ impl Sampler {
     }
 
     /// Returns the number of uniform numbers per sample.
+    #[must_use]
     pub const fn dims(self) -> usize {
         match self {
             Self::Uniform => 2,
@@ -74,6 +76,7 @@ impl Sampler {
     }
 
     /// Returns the number of bands of a sampler that is matched to the model.
+    #[must_use]
     pub const fn bands(self) -> Option<usize> {
         match self {
             Self::Uniform | Self::Published => None,
@@ -84,11 +87,13 @@ impl Sampler {
     }
 
     /// Returns the sampler's number among the streams of random numbers, ordered by the number of bands.
+    #[must_use]
     pub const fn index(self) -> u64 {
         self.color() as u64
     }
 
     /// Returns the number of the sampler's colour, the same in every chart of every report.
+    #[must_use]
     pub const fn color(self) -> usize {
         match self {
             Self::Uniform => 0,
@@ -138,6 +143,7 @@ pub struct Scatter {
 
 impl Scatter {
     /// Prepares this hair, seen from `wo`.
+    #[must_use]
     pub fn new(model: ModelKind, sampler: Sampler, params: &HairParams, wo: Vec3) -> Self {
         Self {
             bsdf: material(model, sampler, params).prepare(wo),
@@ -146,11 +152,13 @@ impl Scatter {
     }
 
     /// Wraps a prepared shading point, with the model's own sampler or with uniform directions.
+    #[must_use]
     pub const fn at(bsdf: AnyBsdf, is_uniform: bool) -> Self {
         Self { bsdf, is_uniform }
     }
 
     /// Draws eight samples, one per lane, from three rows of uniform numbers.
+    #[must_use]
     pub fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
         if self.is_uniform {
             let wi = uniform8(xi);
@@ -161,6 +169,7 @@ impl Scatter {
     }
 
     /// Returns value and density of eight directions, one per lane.
+    #[must_use]
     pub fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
         let eval = self.bsdf.eval_pdf8(wi);
         if self.is_uniform {
@@ -179,6 +188,7 @@ impl Scatter {
 /// # Panics
 ///
 /// Never panics, because every sampler of the models is registered, and their parameters are those of hair.
+#[must_use]
 pub fn material(model: ModelKind, sampler: Sampler, params: &HairParams) -> AnyMaterial {
     let word = sampler.bands().map(|_| sampler.name());
     let id = ModelId::find(model.name(), word).expect("a registered sampler");
@@ -186,6 +196,7 @@ pub fn material(model: ModelKind, sampler: Sampler, params: &HairParams) -> AnyM
 }
 
 /// Returns eight directions uniform on the sphere, from the last two of three numbers.
+#[must_use]
 #[inline]
 pub fn uniform8(xi: &[f32x8; 3]) -> Vec3x8 {
     let one = f32x8::splat(1.0);
@@ -197,6 +208,7 @@ pub fn uniform8(xi: &[f32x8; 3]) -> Vec3x8 {
 }
 
 /// Returns the samples of uniform directions that evaluate to `eval`.
+#[must_use]
 #[inline]
 pub fn uniform_sample8(wi: Vec3x8, eval: Eval8) -> Sample8 {
     let factor = cosine(&wi) * f32x8::splat(1.0 / UNIFORM_PDF);
@@ -208,112 +220,5 @@ pub fn uniform_sample8(wi: Vec3x8, eval: Eval8) -> Sample8 {
         pdf: f32x8::splat(UNIFORM_PDF),
         weight,
         slot: f32x8::ZERO,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use hairis_instruments::sequence::Independent;
-
-    fn numbers(from: &mut Independent) -> [f32x8; 3] {
-        core::array::from_fn(|_| f32x8::new(core::array::from_fn(|_| from.next_f32())))
-    }
-
-    #[test]
-    fn uniform_directions_are_unit_and_fill_the_sphere() {
-        let mut from = Independent::new(1, 0);
-        let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
-        for _ in 0..4_000 {
-            let wi = uniform8(&numbers(&mut from));
-            for lane in 0..8 {
-                let wi = wi.lane(lane);
-                assert!((wi.length() - 1.0).abs() < 1e-6, "{wi}");
-                sum += wi / 32_000.0;
-                squares += wi * wi / 32_000.0;
-            }
-        }
-        // Standard errors of 0.0032 and 0.0017.
-        assert!(sum.abs().max_element() < 0.015, "{sum}");
-        assert!(
-            (squares - Vec3::splat(1.0 / 3.0)).abs().max_element() < 0.008,
-            "{squares}"
-        );
-    }
-
-    #[test]
-    fn samples_agree_with_what_their_sampler_says_of_the_direction() {
-        let params = HairParams::bright();
-        let wo = Vec3::new(0.6, 0.64, 0.48);
-        let mut from = Independent::new(1, 1);
-        for model in ModelKind::ALL {
-            for sampler in Sampler::ALL {
-                let bsdf = Scatter::new(model, sampler, &params, wo);
-                for _ in 0..200 {
-                    let sample = bsdf.sample8(&numbers(&mut from));
-                    let eval = bsdf.eval_pdf8(&sample.wi);
-                    for lane in 0..8 {
-                        let at = |x: &f32x8| f64::from(x.as_array()[lane]);
-                        if at(&sample.pdf) == 0.0 {
-                            continue;
-                        }
-                        let wi = sample.wi.lane(lane);
-                        let cos = f64::from(wi.y).hypot(f64::from(wi.z));
-                        let place = format!("{model:?} {sampler:?} at {wi}");
-                        assert!(
-                            (at(&sample.pdf) / at(&eval.pdf) - 1.0).abs() < 1e-3,
-                            "{place}: pdf"
-                        );
-                        for c in 0..3 {
-                            let want = at(&eval.value[c]) * cos / at(&eval.pdf);
-                            assert!(
-                                (at(&sample.weight[c]) - want).abs() <= 1e-3 * want + 1e-20,
-                                "{place}: weight"
-                            );
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn bounds_of_weights_are_held_and_nearly_reached() {
-        let params = HairParams::bright();
-        let mut from = Independent::new(1, 2);
-        for theta_o in [0.0_f64, 0.8, 1.4] {
-            let wo = hairis_instruments::direction::direction(theta_o.sin(), theta_o.cos(), 1.0);
-            for model in ModelKind::ALL {
-                for sampler in Sampler::ALL
-                    .into_iter()
-                    .filter(|sampler| *sampler != Sampler::Published)
-                {
-                    let bound =
-                        weight_bound(model, sampler, &params, theta_o).expect("there is one");
-                    let bsdf = Scatter::new(model, sampler, &params, wo);
-                    let mut most = 0.0_f32;
-                    for _ in 0..20_000 {
-                        let weight = bsdf.sample8(&numbers(&mut from)).weight;
-                        most = (weight[0] + weight[1] + weight[2])
-                            .to_array()
-                            .into_iter()
-                            .fold(most, f32::max);
-                    }
-                    let (most, near) = (
-                        f64::from(most) / 3.0,
-                        if sampler == Sampler::Uniform {
-                            0.1
-                        } else {
-                            0.5
-                        },
-                    );
-                    let place = format!("{model:?} {sampler:?} at {theta_o}");
-                    assert!(
-                        most <= bound * (1.0 + 1e-5) && most > near * bound,
-                        "{place}: {most} of {bound}"
-                    );
-                }
-            }
-        }
     }
 }

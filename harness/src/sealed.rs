@@ -7,6 +7,7 @@ use std::io;
 const CHECKSUM: [&str; 2] = [",\"checksum\":\"", "\"}"];
 
 /// Returns a hash of bytes (FNV-1a). A line's hash is over the bytes before its checksum.
+#[must_use]
 pub fn checksum(line: &[u8]) -> String {
     let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
     format!("{:016x}", line.iter().fold(0xcbf2_9ce4_8422_2325, step))

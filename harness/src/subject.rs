@@ -21,11 +21,13 @@ impl ModelKind {
     pub const ALL: [Self; 2] = [Self::Gaussian, Self::Cauchy];
 
     /// Returns the name of the model in reports.
+    #[must_use]
     pub const fn name(self) -> &'static str {
         self.id().name()
     }
 
     /// Returns the registry's entry of the model with the published sampler.
+    #[must_use]
     pub const fn id(self) -> ModelId {
         match self {
             Self::Gaussian => ModelId::Gaussian,
@@ -34,6 +36,7 @@ impl ModelKind {
     }
 
     /// Returns the name of the model in titles and sentences.
+    #[must_use]
     pub const fn title(self) -> &'static str {
         match self {
             Self::Gaussian => "Gaussian",
@@ -42,6 +45,7 @@ impl ModelKind {
     }
 
     /// Returns the model's bell in the reference.
+    #[must_use]
     pub const fn shape(self) -> Shape {
         match self {
             Self::Gaussian => Shape::Gaussian,
@@ -50,6 +54,7 @@ impl ModelKind {
     }
 
     /// Returns the formulas of the model with the matched sampler of so many bands, or with the published one.
+    #[must_use]
     pub const fn formulas(self, bands: Option<usize>) -> HairFormulas {
         HairFormulas {
             shape: self.shape(),
@@ -59,6 +64,7 @@ impl ModelKind {
     }
 
     /// Returns the model's number among the streams of random numbers.
+    #[must_use]
     pub const fn index(self) -> u64 {
         self as u64
     }
@@ -104,21 +110,4 @@ pub fn random(mut values: Values, xi: &mut Independent) -> Values {
 /// Returns an error only if drawn parameters are rejected, which does not happen because every range lies within the accepted one.
 pub fn random_hair(xi: &mut Independent) -> Result<HairParams, ParamError> {
     HairParams::from_values(&random(HairParams::bright().values(), xi))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn random_hair_is_accepted_and_differs() {
-        let mut xi = Independent::new(3, 0);
-        let hair: Vec<HairParams> = (0..1_000)
-            .map(|_| random_hair(&mut xi).expect("within range"))
-            .collect();
-        assert!(
-            hair.windows(2).all(|pair| pair[0] != pair[1]),
-            "two draws are the same hair"
-        );
-    }
 }

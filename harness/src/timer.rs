@@ -15,6 +15,7 @@ pub struct TimeSpread {
 
 impl TimeSpread {
     /// Returns the median with its standard error.
+    #[must_use]
     pub const fn median(&self) -> Estimate {
         Estimate {
             value: self.quartiles[1],
@@ -69,6 +70,7 @@ pub fn quartiles(samples: &[f64]) -> [f64; 3] {
 
 /// Returns the standard error of the median of `count` numbers with these quartiles. The spread is taken as normal: its deviation is
 /// 1/1.349 of the quartiles' distance, and a median's error 1.2533 of a mean's.
+#[must_use]
 pub fn median_error(quartiles: [f64; 3], count: usize) -> f64 {
     1.2533 / 1.349 * (quartiles[2] - quartiles[0]) / (count as f64).sqrt()
 }

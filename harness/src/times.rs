@@ -36,7 +36,7 @@ const LOOK_UP_PACKETS: usize = 512;
 
 /// Timed operation.
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Timed {
+pub enum Timed {
     /// Sample of a model by a sampler, with so many per shading point.
     Sample(ModelKind, Sampler, usize),
     /// Look-up of the light of this name.
@@ -46,7 +46,8 @@ enum Timed {
 /// Times of a sample, of a look-up of the light and, on request, of a ray without its tracing, measured on this machine.
 #[derive(Clone, Debug, Default)]
 pub struct Times {
-    of_samples: Vec<(Timed, TimeSpread)>,
+    /// Times of samples and look-ups.
+    pub of_samples: Vec<(Timed, TimeSpread)>,
     /// Times of rays without their tracing; empty unless [`with_rays`](Self::with_rays) has measured them.
     pub of_rays: Vec<RayTimes>,
 }
@@ -93,16 +94,19 @@ impl Times {
     }
 
     /// Returns the median time of a sample in ns, for 1, 4 or 16 samples per shading point, or NaN for other numbers.
+    #[must_use]
     pub fn ns(&self, model: ModelKind, sampler: Sampler, per_point: usize) -> Estimate {
         self.median(&Timed::Sample(model, sampler, per_point))
     }
 
     /// Returns the median time of a look-up of the light of this name in ns, or NaN if it was not measured.
+    #[must_use]
     pub fn look_up(&self, light: &str) -> Estimate {
         self.median(&Timed::LookUp(light.to_owned()))
     }
 
     /// Returns the times of samples and look-ups as columns. Fields that do not apply to a row are empty.
+    #[must_use]
     pub fn columns(&self) -> Columns {
         let words = |(of, _): &(Timed, TimeSpread)| match of {
             Timed::Sample(model, sampler, per_point) => [
@@ -135,7 +139,7 @@ impl Times {
 }
 
 /// Measures every sampler of every model, and every light.
-fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeSpread)> {
+pub fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeSpread)> {
     let mut from = Independent::new(seed, stream_id(&[0x71e5]));
     let points: Vec<Points> = (0..PACKETS).map(|_| Points::draw(&mut from)).collect();
     // Each entry has the operation, a pass of it, and the passes of a stretch, because short passes are repeated.
@@ -184,7 +188,7 @@ fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeS
 }
 
 /// Draws directions of the published sampler on the default hair, sixteen per shading point.
-fn directions(from: &mut Independent) -> Vec<Vec3x8> {
+pub fn directions(from: &mut Independent) -> Vec<Vec3x8> {
     let material = material(
         ModelKind::Gaussian,
         Sampler::Published,
@@ -246,62 +250,4 @@ fn each(xi: &[[f32x8; 3]], sample: impl Fn(&[f32x8; 3]) -> Sample8) -> Sample8 {
         black_box(&last);
     }
     last
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use hairis_instruments::light::{Constant, Smooth};
-
-    #[test]
-    fn every_sampler_and_light_is_timed() {
-        let times = Times {
-            of_samples: measure(1, 3, &[&Constant, &Smooth]),
-            of_rays: Vec::new(),
-        };
-        assert_eq!(
-            times.of_samples.len(),
-            ModelKind::ALL.len() * Sampler::ALL.len() * PER_POINT.len() + 2
-        );
-        for (of, time) in &times.of_samples {
-            let [q1, median, q3] = time.quartiles;
-            assert!(
-                q1 > 0.0 && q1 <= median && median <= q3 && time.standard_error >= 0.0,
-                "{time:?}"
-            );
-            let found = match of {
-                Timed::Sample(model, sampler, per_point) => times.ns(*model, *sampler, *per_point),
-                Timed::LookUp(light) => times.look_up(light),
-            };
-            assert_eq!(
-                found,
-                Estimate {
-                    value: median,
-                    standard_error: time.standard_error
-                }
-            );
-        }
-        assert!(
-            times
-                .ns(ModelKind::Gaussian, Sampler::Published, 2)
-                .value
-                .is_nan(),
-            "not measured"
-        );
-        assert!(times.look_up("sun").value.is_nan(), "no such light");
-    }
-
-    #[test]
-    fn look_ups_are_in_many_directions_all_over_the_sphere() {
-        let seen = directions(&mut Independent::new(1, 0));
-        assert_eq!(seen.len() * 8, 1 << 16);
-        // Patches of equal size: steps along the axis, and of 10 degrees around it.
-        let mut cells = std::collections::BTreeSet::new();
-        for wi in seen.iter().flat_map(|wi| (0..8).map(|lane| wi.lane(lane))) {
-            assert!((wi.length() - 1.0).abs() < 1e-5, "{wi}");
-            let patch = [10.0 * wi.x, wi.z.atan2(wi.y).to_degrees() / 10.0];
-            cells.insert(patch.map(|place| place.floor().to_string()));
-        }
-        assert!(cells.len() > 700, "{} of 720 patches", cells.len());
-    }
 }

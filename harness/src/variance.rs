@@ -5,8 +5,8 @@
 
 pub mod check;
 mod columns;
-mod perfect;
-mod tally;
+pub mod perfect;
+pub mod tally;
 
 pub use columns::{By, MIS, POOLS, RAYS, figures_of, half_visible, ray_v};
 pub use perfect::SOURCE;

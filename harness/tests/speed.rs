@@ -1,4 +1,7 @@
-//! Tests of the timings, outside of the crate so that the timed code is compiled once.
+//! Tests of the timings.
+
+mod contests;
+mod threads;
 
 use hairis::simd::Level;
 use hairis_harness::speed::{SpeedConfig, TimedOp, run};

@@ -20,11 +20,11 @@ const CUT: f64 = 1e-6;
 const SEAM: f64 = 1e-9;
 
 /// Function that prepares the formulas of given values, seen from `wo` at the offset `h`.
-pub(super) type Formulas<'a> =
+pub type Formulas<'a> =
     dyn Fn(&Values, Vec3, f32) -> Result<Box<dyn Reference<f64>>, ParamError> + Sync + 'a;
 
 /// Returns the function that prepares the formulas of a model.
-pub(super) fn formulas(
+pub fn formulas(
     model: ModelId,
 ) -> impl Fn(&Values, Vec3, f32) -> Result<Box<dyn Reference<f64>>, ParamError> {
     move |values, wo, h| reference(model, values, to_f64(wo), f64::from(h))

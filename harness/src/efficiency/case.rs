@@ -15,8 +15,10 @@ use hairis_reference::Reference;
 
 /// Model with its parameters, seen from `wo`.
 pub struct Case {
-    pub(super) model: ModelKind,
-    pub(super) theta_o_deg: f64,
+    /// Model.
+    pub model: ModelKind,
+    /// Inclination of the viewer, in degrees.
+    pub theta_o_deg: f64,
     /// Samplers of the case, in the order of [`Sampler::ALL`].
     estimators: [SampledCase; Sampler::ALL.len()],
 }

@@ -262,7 +262,8 @@ pub(super) fn reference_v(
 }
 
 /// Returns V of the default hair to three decimals, as another implementation recorded it.
-pub(super) fn recorded_v(model: ModelKind, sampler: Sampler, theta_o_deg: f64) -> Option<f64> {
+#[must_use]
+pub fn recorded_v(model: ModelKind, sampler: Sampler, theta_o_deg: f64) -> Option<f64> {
     let figures = match (model, sampler) {
         (ModelKind::Gaussian, Sampler::Uniform) => [0.706, 0.931, 2.268],
         (ModelKind::Gaussian, Sampler::Published) => [0.209, 0.189, 0.290],

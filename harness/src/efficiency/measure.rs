@@ -11,9 +11,9 @@ use hairis_instruments::stats::{Estimate, Moments};
 
 /// Moments of one cell, with the largest weight and contribution among its samples.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct CellMoments {
+pub struct CellMoments {
     /// Moments of single contributions, of pairs, or of the means of randomisations.
-    pub(super) moments: Moments,
+    pub moments: Moments,
     pub(super) max_weight: f64,
     pub(super) max_contribution: f64,
 }
@@ -99,7 +99,7 @@ fn contributions(
 }
 
 /// Returns the moments of the means of `n` contributions over `randomisations`, or of single independent contributions for an `n` of 1.
-pub(super) fn moments(
+pub fn moments(
     case: &Case,
     technique: Technique,
     light: &dyn Light,
@@ -153,6 +153,7 @@ pub(super) fn moments(
 ///
 /// - Source: Hall 1992, On the removal of skewness by transformation, equation (3).
 /// - Domain: 0 if the mean is exactly the reference; infinite if it differs without any spread; NaN if a contribution was NaN.
+#[must_use]
 pub fn bias_z(moments: &Moments, reference: Estimate) -> f64 {
     let mean = moments.mean_estimate();
     let difference = mean.value - reference.value;
@@ -176,6 +177,7 @@ pub fn bias_z(moments: &Moments, reference: Estimate) -> f64 {
 /// Returns true if `samples` of variance `v` and of this skewness suffice for a test of their mean. If rare hits carry a part of the mean,
 /// their number decides, which is `n / skewness^2` whatever the part; if they carry all of it, `n / (1 + V)` decides as well. NaN (black
 /// light, black hair) does not prevent the test.
+#[must_use]
 pub fn is_tested(samples: usize, [v, skewness]: [f64; 2]) -> bool {
     let n = samples as f64;
     (v.is_nan() || n / (1.0 + v) >= MIN_EFFECTIVE)

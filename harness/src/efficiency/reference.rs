@@ -159,7 +159,8 @@ pub fn stratified(
 ///
 /// The run draws from the map, in `passes` randomisations of 64 x 64 strata. It shares only the map's own sampling with the estimates that
 /// it is a reference for.
-pub(super) fn of_environment(
+#[must_use]
+pub fn of_environment(
     case: &Case,
     map: &Environment,
     max_texels: usize,

@@ -89,6 +89,7 @@ impl Reference {
     }
 
     /// Returns the integral with its standard error.
+    #[must_use]
     pub const fn estimate(&self) -> Estimate {
         Estimate {
             value: self.value,
@@ -97,6 +98,7 @@ impl Reference {
     }
 
     /// Returns V and skewness of one independent sample, or NaN for a sampler that is not compared.
+    #[must_use]
     pub fn predicted(&self, sampler: Sampler) -> [f64; 2] {
         [&self.v, &self.skewness].map(|each| of_sampler(each, sampler))
     }
@@ -186,6 +188,7 @@ impl Technique {
     }
 
     /// Returns the name of the technique in reports.
+    #[must_use]
     pub fn name(self) -> String {
         match self {
             Self::Light => "light only".to_owned(),
@@ -195,6 +198,7 @@ impl Technique {
     }
 
     /// Returns the number of samples that a contribution takes.
+    #[must_use]
     pub fn samples_each(self) -> usize {
         if matches!(self, Self::Mis(_)) { 2 } else { 1 }
     }

@@ -165,7 +165,8 @@ fn product<A: Copy, B: Copy>(a: &[A], b: &[B]) -> Vec<(A, B)> {
 }
 
 /// Checks every z-score against the bound that all of them together keep with probability `1 - FALSE_ALARM`.
-pub(super) fn check(result: &EfficiencyResult) -> Check {
+#[must_use]
+pub fn check(result: &EfficiencyResult) -> Check {
     let name = |model: ModelKind, sampler: Sampler| format!("{} {}", model.name(), sampler.name());
     let (mut scores, mut untested) = (Vec::new(), 0);
     let mut test = |tested: bool, z: f64, what: String| {
@@ -258,6 +259,7 @@ impl Check {
 }
 
 /// Returns the `|z|` of a two-sided p-value.
+#[must_use]
 pub fn z_bound(p: f64) -> f64 {
     SQRT_2 * erfc_inv(p)
 }

@@ -82,7 +82,9 @@ impl Point {
 }
 
 impl EqualTime {
-    pub(super) fn new(row: &RayRow, times: &RayTimes) -> Self {
+    /// Joins the figures of a row with its times.
+    #[must_use]
+    pub fn new(row: &RayRow, times: &RayTimes) -> Self {
         let half = VISIBLE
             .iter()
             .position(|share| *share == HALF)

@@ -251,7 +251,7 @@ pub fn unoccluded<const S: usize>(
 }
 
 /// Measures a shading point with `count` of the largest pools, and with their parts as smaller pools.
-pub(super) fn pose(
+pub fn pose(
     lit: Lit<'_>,
     theta_o_deg: f64,
     reference: Estimate,

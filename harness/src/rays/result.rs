@@ -85,7 +85,8 @@ pub struct OneRay {
 
 impl OneRay {
     /// Returns all figures, given V without occlusion.
-    pub(super) fn new(unoccluded: Estimate) -> Self {
+    #[must_use]
+    pub fn new(unoccluded: Estimate) -> Self {
         Self {
             unoccluded,
             visible: VISIBLE.map(|share| occluded(unoccluded, share)),
@@ -94,6 +95,7 @@ impl OneRay {
 }
 
 /// Returns V of one ray that passes with probability `share`, whatever its direction, from `E[X^2]/share` over the squared mean.
+#[must_use]
 pub fn occluded(v: Estimate, share: f64) -> Estimate {
     Estimate {
         value: (v.value + 1.0) / share - 1.0,

@@ -77,7 +77,7 @@ pub fn run(
 }
 
 /// Measures the variances.
-pub(super) fn rows(
+pub fn rows(
     config: &RaysConfig<'_>,
     subjects: &[RaySubject],
     lights: &[&dyn Light],
@@ -175,7 +175,8 @@ fn by_run(
 }
 
 /// Checks every bias against one bound.
-pub(super) fn check(rows: &[RayRow]) -> Check {
+#[must_use]
+pub fn check(rows: &[RayRow]) -> Check {
     let (mut scores, mut untested) = (Vec::new(), 0);
     for row in rows {
         for pose in &row.poses {

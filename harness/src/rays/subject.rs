@@ -50,6 +50,7 @@ impl RaySubject {
     }
 
     /// Returns the entry of the registry, unless directions are uniform.
+    #[must_use]
     pub fn own(self) -> Option<ModelId> {
         (!self.is_uniform).then_some(self.id)
     }
@@ -95,7 +96,8 @@ impl RaySubject {
     /// # Panics
     ///
     /// Never panics, because default parameters are within their ranges.
-    pub(super) fn scatter(self, pose: usize) -> Scatter {
+    #[must_use]
+    pub fn scatter(self, pose: usize) -> Scatter {
         let hit = Hit::new(viewer(pose), OFFSETS[pose]);
         self.at(&self.id.measured(), hit)
             .expect("defaults are accepted")

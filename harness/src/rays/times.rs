@@ -77,6 +77,7 @@ impl RayTimes {
 
     /// Returns the time of one ray with its standard error, in ns: by one-sample MIS, or from a pool of so many candidates of each
     /// technique. The time is NaN if no such pool is measured.
+    #[must_use]
     pub fn ray(&self, candidates_each: Option<u32>) -> Estimate {
         let Some(count) = candidates_each else {
             return Estimate {

@@ -63,7 +63,7 @@ impl<const N: usize> Chunk<N> {
 }
 
 /// Returns the numbers of threads: one, two, four and so on up to all logical cores.
-fn thread_counts() -> Vec<usize> {
+pub fn thread_counts() -> Vec<usize> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     let mut counts: Vec<usize> = core::iter::successors(Some(1), |n| Some(2 * n))
         .take_while(|n| *n < all)
@@ -73,7 +73,11 @@ fn thread_counts() -> Vec<usize> {
 }
 
 /// Measures evaluation and sampling of one model on every number of threads.
-pub(super) fn run(model: ModelId, inputs: &TimedInputs) -> Result<Vec<ThreadsResult>, ParamError> {
+///
+/// # Errors
+///
+/// Returns an error if the default hair is rejected.
+pub fn run(model: ModelId, inputs: &TimedInputs) -> Result<Vec<ThreadsResult>, ParamError> {
     let counts = thread_counts();
     let pools: Result<Vec<_>, _> = counts
         .iter()
@@ -165,31 +169,4 @@ fn time<const N: usize>(
         }
     }
     ns
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_number_of_threads_has_its_row() {
-        let counts = thread_counts();
-        assert!(
-            counts[0] == 1 && counts.windows(2).all(|pair| pair[0] < pair[1]),
-            "{counts:?}"
-        );
-        let inputs = crate::speed::draw(ModelId::Gaussian, 1);
-        let rows = run(ModelId::Gaussian, &inputs).expect("the default is legal");
-        assert_eq!(rows.len(), 2 * counts.len(), "a row is missing");
-        for row in &rows {
-            assert!(
-                row.millions > 0.0 && row.speedup > 0.0 && row.speedup_q1 <= row.speedup_q3,
-                "{row:?}"
-            );
-            assert!(
-                row.threads != 1 || row.speedup == 1.0,
-                "one thread against itself: {row:?}"
-            );
-        }
-    }
 }

@@ -26,6 +26,7 @@ pub struct Checked<'a> {
 /// - Under the constant light, which every direction sees, the samplers of a group agree on the mean with the first of them. All of their
 ///   scores together stay below a bound that chance alone exceeds with probability [`FALSE_ALARM`].
 /// - The same holds for the means of rays from the largest pools against those of samples, under every light.
+#[must_use]
 pub fn failures(rows: &[Checked<'_>]) -> Vec<String> {
     let mut failures = Vec::new();
     for row in rows {

@@ -41,11 +41,13 @@ pub const MIS: usize = 0;
 pub const POOLS: [usize; POOL_SIZES.len()] = [1, 2];
 
 /// Returns V of one ray without occlusion, by index in [`RAYS`], or NaN if it was not measured.
+#[must_use]
 pub fn ray_v(measured: &Measured, by: usize) -> Estimate {
     measured.rays.map_or(Estimate::UNKNOWN, |rays| rays[by])
 }
 
 /// Returns V with half of the directions visible.
+#[must_use]
 pub fn half_visible(measured: &Measured, by: usize) -> Estimate {
     occluded(ray_v(measured, by), HALF)
 }
@@ -67,6 +69,7 @@ fn rays(mut columns: Columns, rows: &[&Measured]) -> Columns {
 }
 
 /// Adds the columns of figures, after those that identify a row.
+#[must_use]
 pub fn figures_of(columns: Columns, rows: &[&Measured]) -> Columns {
     let figures = |of: fn(&Measured) -> f64| rows.iter().map(move |row| of(row));
     let columns = columns

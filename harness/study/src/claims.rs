@@ -19,17 +19,17 @@
 //! Figures depend on the seed and on the build, whatever the number of threads. Figures whose [`Origin`] is [`Timed`](Origin::Timed), all
 //! of them in one claim, depend on the machine as well.
 
-mod bounded;
-mod bounds;
-mod claim;
-mod energy;
-mod glint;
-mod grazing;
-mod hair;
+pub mod bounded;
+pub mod bounds;
+pub mod claim;
+pub mod energy;
+pub mod glint;
+pub mod grazing;
+pub mod hair;
 mod performance;
 mod tables;
-mod tails;
-mod uniform;
+pub mod tails;
+pub mod uniform;
 
 pub use claim::{Claim, Figure, Origin, Role, Side, Threshold, Verdict};
 pub use tables::tables;
@@ -162,7 +162,11 @@ pub fn sampled(plan: &Plan<'_>, journal: &Journal) -> Result<Vec<String>, Error>
 }
 
 /// Returns the hair of a cell.
-fn hair_of(cell: &Cell, model: ModelKind) -> Result<Hair, ParamError> {
+///
+/// # Errors
+///
+/// Returns an error if the hair is rejected.
+pub fn hair_of(cell: &Cell, model: ModelKind) -> Result<Hair, ParamError> {
     Ok(Hair::new(
         model,
         &cell.params()?,

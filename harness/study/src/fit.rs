@@ -15,13 +15,13 @@
 //! norm, of all ends, starts and [`rules`], so that it is never further away than any of them.
 
 mod blur;
-mod objective;
+pub mod objective;
 mod over;
 pub(crate) mod page;
-mod points;
+pub mod points;
 mod residual;
 mod rules;
-mod variables;
+pub mod variables;
 
 pub(crate) use over::value_columns;
 pub use over::{Refit, columns, hair_of, refits, table};
@@ -237,6 +237,3 @@ pub fn fit(from: &Look, to: ModelId, config: &FitConfig) -> Result<Fit, ParamErr
         points: others,
     })
 }
-
-#[cfg(test)]
-mod tests;

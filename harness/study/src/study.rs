@@ -31,25 +31,25 @@
 //!
 //! Add a variant of [`Sampler`], with its arms in `sampler.rs`.
 
-mod cell;
-mod check;
-mod equal_time;
+pub mod cell;
+pub mod check;
+pub mod equal_time;
 mod estimator;
-mod finished;
+pub mod finished;
 pub mod grid;
 pub mod output;
 pub mod part;
 mod rays;
 mod refit;
-mod report;
-mod rows;
-mod summary;
+pub mod report;
+pub mod rows;
+pub mod summary;
 
-mod view;
+pub mod view;
 
 pub use grid::{Cell, Grid};
 
-pub(crate) use view::gain;
+pub use view::gain;
 
 use hairis::ParamError;
 use hairis::simd::Level;
@@ -184,7 +184,7 @@ pub fn run(
 
 /// V of a sampler on a model under a light.
 #[derive(Clone, Debug)]
-pub(crate) struct Variance {
+pub struct Variance {
     pub(crate) model: ModelKind,
     /// Name of the light.
     pub(crate) light: String,
@@ -196,7 +196,7 @@ pub(crate) struct Variance {
 /// # Errors
 ///
 /// Returns an error if the hair of the cell is rejected.
-pub(crate) fn variances(
+pub fn variances(
     plan: &Plan<'_>,
     budget: SampleBudget,
     cell: &Cell,

@@ -1,5 +1,15 @@
 //! Direction of each of the paper's claims: the side of the threshold that figures are on, and the verdict that follows.
 
+mod bounded;
+mod bounds;
+mod claim;
+mod energy;
+mod glint;
+mod grazing;
+mod hair;
+mod tails;
+mod uniform;
+
 use hairis_harness::journal::Journal;
 use hairis_study::claims::{Claim, Claims, Figure, Origin, Role, Verdict, run, tables};
 use std::sync::OnceLock;

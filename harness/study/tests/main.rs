@@ -3,4 +3,7 @@
 
 mod claims;
 mod cli;
+mod difference;
+mod fit;
 mod lights;
+mod study;

@@ -7,9 +7,11 @@ use hairis_instruments::stats::Estimate;
 
 /// Number with a bound estimate of its error. Arithmetic carries the error to first order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bounded {
-    pub(super) value: f64,
-    pub(super) error: f64,
+pub struct Bounded {
+    /// Number.
+    pub value: f64,
+    /// Bound estimate of the error.
+    pub error: f64,
 }
 
 impl Bounded {
@@ -17,7 +19,9 @@ impl Bounded {
         Self { value, error: 0.0 }
     }
 
-    pub(super) fn times(self, other: Self) -> Self {
+    /// Returns the product with another number.
+    #[must_use]
+    pub fn times(self, other: Self) -> Self {
         let error = (self.value * other.error).abs() + (other.value * self.error).abs();
         Self {
             value: self.value * other.value,
@@ -25,7 +29,9 @@ impl Bounded {
         }
     }
 
-    pub(super) fn over(self, other: Self) -> Self {
+    /// Returns the quotient by another number.
+    #[must_use]
+    pub fn over(self, other: Self) -> Self {
         let value = self.value / other.value;
         Self {
             value,
@@ -33,14 +39,18 @@ impl Bounded {
         }
     }
 
-    pub(super) fn plus(self, exact: f64) -> Self {
+    /// Returns the sum with an exact number.
+    #[must_use]
+    pub fn plus(self, exact: f64) -> Self {
         Self {
             value: self.value + exact,
             ..self
         }
     }
 
-    pub(super) fn magnitude(self) -> Self {
+    /// Returns the magnitude.
+    #[must_use]
+    pub fn magnitude(self) -> Self {
         Self {
             value: self.value.abs(),
             ..self
@@ -89,10 +99,13 @@ pub(super) fn integrals<const N: usize>(
 
 /// Least, largest and geometric mean of a collection, or NaN if it is empty. Among equals, the first counts.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Spread {
-    pub(super) least: Bounded,
-    pub(super) most: Bounded,
-    pub(super) mean: Bounded,
+pub struct Spread {
+    /// Least number.
+    pub least: Bounded,
+    /// Largest number.
+    pub most: Bounded,
+    /// Geometric mean.
+    pub mean: Bounded,
 }
 
 impl FromIterator<Bounded> for Spread {
@@ -127,40 +140,6 @@ impl FromIterator<Bounded> for Spread {
 }
 
 /// Returns the largest number, the first among equals, or NaN if there is none.
-pub(super) fn largest(all: impl IntoIterator<Item = Bounded>) -> Bounded {
+pub fn largest(all: impl IntoIterator<Item = Bounded>) -> Bounded {
     all.into_iter().collect::<Spread>().most
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn errors_are_carried() {
-        let [a, b] = [(6.0, 0.3), (2.0, 0.1)].map(|(value, error)| Bounded { value, error });
-        let near = |got: Bounded, value: f64, error: f64| {
-            assert!(
-                (got.value - value).abs() < 1e-12 && (got.error - error).abs() < 1e-12,
-                "{got:?}"
-            );
-        };
-        near(a.times(b), 12.0, 1.2);
-        near(a.over(b), 3.0, 0.3);
-        near(b.plus(-5.0).magnitude(), 3.0, 0.1);
-        near([a, b].into_iter().sum(), 8.0, 0.4);
-        let four = [
-            Bounded {
-                value: 2.0,
-                error: 0.02,
-            },
-            Bounded {
-                value: 8.0,
-                error: 0.08,
-            },
-        ];
-        near(four.into_iter().collect::<Spread>().mean, 4.0, 0.04);
-        let Spread { least, most, .. } = [b, a].into_iter().collect();
-        assert_eq!([most, least], [a, b]);
-        assert!(largest([]).value.is_nan(), "of nothing");
-    }
 }

@@ -64,7 +64,7 @@ pub struct Figure {
 
 impl Figure {
     /// Returns a figure without a unit that explains but does not decide.
-    pub(super) fn new(name: impl Into<String>, origin: Origin, number: impl Into<Bounded>) -> Self {
+    pub fn new(name: impl Into<String>, origin: Origin, number: impl Into<Bounded>) -> Self {
         let Bounded { value, error } = number.into();
         Self {
             name: name.into(),
@@ -163,20 +163,27 @@ impl Verdict {
 
 /// Claim to be judged: the words of the paper, and the threshold that decides.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Statement {
-    pub(super) id: &'static str,
-    pub(super) quotation: &'static str,
-    pub(super) source: &'static str,
+pub struct Statement {
+    /// Name of the claim.
+    pub id: &'static str,
+    /// Words of the paper.
+    pub quotation: &'static str,
+    /// Section of the paper.
+    pub source: &'static str,
     /// Quantity that is bounded, in words.
-    pub(super) of: &'static str,
-    pub(super) side: Side,
-    pub(super) bound: f64,
-    pub(super) limits: &'static str,
+    pub of: &'static str,
+    /// Side of the bound on which the claim holds.
+    pub side: Side,
+    /// Bound.
+    pub bound: f64,
+    /// Limits within which the claim may hold, in words.
+    pub limits: &'static str,
 }
 
 impl Statement {
     /// Returns the claim with the verdict that follows from its first two figures: the worst of all cases, and the worst within the limits.
-    pub(super) fn judge(self, mut figures: Vec<Figure>, sentence: String) -> Claim {
+    #[must_use]
+    pub fn judge(self, mut figures: Vec<Figure>, sentence: String) -> Claim {
         let Self {
             id,
             quotation,
@@ -237,67 +244,4 @@ pub struct Claim {
     pub verdict: Verdict,
     /// Summary of the figures in a sentence.
     pub sentence: String,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn number(value: f64, error: f64) -> Figure {
-        Figure::new("a number", Origin::Quadrature, Bounded { value, error })
-    }
-
-    fn verdict(side: Side, figures: [Figure; 2]) -> Verdict {
-        let (quotation, source, of) = ("words", "section", "a number");
-        let statement = Statement {
-            id: "id",
-            quotation,
-            source,
-            of,
-            side,
-            bound: 1.0,
-            limits: "here",
-        };
-        statement.judge(figures.into(), String::new()).verdict
-    }
-
-    #[test]
-    fn figures_decide() {
-        let [small, large, nan] = [0.5, 1.5, f64::NAN].map(|value| number(value, 0.0));
-        for (side, good, bad) in [
-            (Side::AtMost, &small, &large),
-            (Side::AtLeast, &large, &small),
-        ] {
-            assert_eq!(verdict(side, [good.clone(), good.clone()]), Verdict::Holds);
-            assert_eq!(
-                verdict(side, [bad.clone(), good.clone()]),
-                Verdict::HoldsWithinLimits
-            );
-            assert_eq!(verdict(side, [bad.clone(), bad.clone()]), Verdict::False);
-            assert_eq!(
-                verdict(side, [nan.clone(), nan.clone()]),
-                Verdict::False,
-                "no number keeps nothing"
-            );
-        }
-    }
-
-    #[test]
-    fn what_is_unsure_is_not_kept() {
-        let of = |error: f64| number(0.9, error);
-        assert_eq!(verdict(Side::AtMost, [of(0.05), of(0.05)]), Verdict::Holds);
-        assert_eq!(
-            verdict(Side::AtMost, [of(0.2), of(0.05)]),
-            Verdict::HoldsWithinLimits
-        );
-        let sampled = Figure {
-            origin: Origin::Sampled,
-            ..of(0.07)
-        };
-        assert_eq!(
-            verdict(Side::AtMost, [sampled.clone(), sampled]),
-            Verdict::False,
-            "within two standard errors"
-        );
-    }
 }

@@ -35,7 +35,11 @@ const INTERVAL: Statement = Statement {
 const GAPS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 
 /// Returns the grid's glints of the stronger kind, one per pair of widths and half angles, without R and, unless `tt`, without TT.
-fn glints(tt: bool) -> Result<Vec<HairParams>, ParamError> {
+///
+/// # Errors
+///
+/// Returns an error if hair is rejected.
+pub fn glints(tt: bool) -> Result<Vec<HairParams>, ParamError> {
     let base = *HairParams::bright().desc();
     let (grid, none) = (Grid::FULL, [0.0; 3]);
     let strongest = grid.intensity_g.iter().copied().fold(0.0, f32::max);
@@ -56,7 +60,7 @@ fn glints(tt: bool) -> Result<Vec<HairParams>, ParamError> {
 }
 
 /// Returns the total of the printed density, less 1.
-fn excess(params: &HairParams) -> Bounded {
+pub fn excess(params: &HairParams) -> Bounded {
     let HairDesc { phi_g, gamma_g, .. } = params.desc().map(f64::from);
     let printed = |phi: f64| [2.0 * errata::glint(phi_g, gamma_g, phi)];
     let [total] = integrals(printed, &[0.0, FRAC_PI_2, PI], phi_g, gamma_g);
@@ -93,7 +97,8 @@ pub(super) fn density(cells: &FoundCells) -> Result<Claim, ParamError> {
 }
 
 /// Returns V over azimuths up to `gap` from pi: of the published sampler, and with glints drawn from [0, pi].
-fn up_to(hair: &Hair, gap: f64) -> [Bounded; 2] {
+#[must_use]
+pub fn up_to(hair: &Hair, gap: f64) -> [Bounded; 2] {
     let decades = (1..).map(|k| 10.0_f64.powi(-k)).take_while(|x| *x > gap);
     let ends: Vec<f64> = [0.0]
         .into_iter()
@@ -104,7 +109,8 @@ fn up_to(hair: &Hair, gap: f64) -> [Bounded; 2] {
 }
 
 /// Returns the contribution to V of azimuths from `10 gap` to `gap` away from pi.
-fn decade(hair: &Hair, gap: f64) -> [Bounded; 2] {
+#[must_use]
+pub fn decade(hair: &Hair, gap: f64) -> [Bounded; 2] {
     hair.second_moments(&[PI - 10.0 * gap, PI - gap])
 }
 
@@ -174,47 +180,4 @@ pub(super) fn interval(cells: &FoundCells) -> Result<Claim, ParamError> {
         ),
     ]));
     Ok(INTERVAL.judge(figures, sentence))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_printed_density_exceeds_one_by_what_lies_beyond() {
-        let base = *HairParams::bright().desc();
-        let params = HairParams::new(&HairDesc {
-            phi_g: 0.61,
-            gamma_g: 0.17,
-            ..base
-        })
-        .expect("accepted");
-        let arc = |end: f64| ((end - 0.61) / 0.17_f64).atan();
-        let want = (arc(PI) - arc(0.0)) / (arc(FRAC_PI_2) - arc(0.0)) - 1.0;
-        let got = excess(&params);
-        assert!(
-            (got.value - want).abs() < 1e-6 && (got.value - 0.04).abs() < 5e-3,
-            "{got:?} {want}"
-        );
-    }
-
-    #[test]
-    fn every_decade_adds_the_same_and_nothing_when_glints_reach_the_end() {
-        let params = *glints(false).expect("accepted").last().expect("some");
-        let hair = Hair::new(ModelKind::Cauchy, &params, 0.0);
-        let [[first, first_whole], [last, last_whole]] = [1e-5, 1e-8].map(|gap| decade(&hair, gap));
-        assert!(
-            (last.value / first.value - 1.0).abs() < 0.01 && last.value > 1e-3,
-            "{first:?} {last:?}"
-        );
-        assert!(
-            last_whole.value < 2e-3 * first_whole.value,
-            "{first_whole:?} {last_whole:?}"
-        );
-        let [[near, _], [far, _]] = [1e-8, 1e-7].map(|gap| up_to(&hair, gap));
-        assert!(
-            (near.value - far.value - last.value).abs() < 1e-5,
-            "{near:?} {far:?} {last:?}"
-        );
-    }
 }

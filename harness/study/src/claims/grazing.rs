@@ -23,7 +23,7 @@ const STATEMENT: Statement = Statement {
 };
 
 /// Angle to the axis within which samples are discarded, rad.
-const CAP: f64 = 1e-5;
+pub const CAP: f64 = 1e-5;
 
 /// Widths of the lobe that points at the axis, rad: the least accepted width, then 0.1, 0.5, 2.5, 10 and 60 degrees.
 const BETA: [f64; 6] = [
@@ -37,7 +37,8 @@ const BETA: [f64; 6] = [
 
 impl Longitudinal {
     /// Returns `M cos^2 theta_i / cos^2 theta_d` at `delta` from the end `sign` of the axis. The reference returns 0 within the cap.
-    fn energy_at(&self, shape: Shape, sign: f64, delta: f64) -> f64 {
+    #[must_use]
+    pub fn energy_at(&self, shape: Shape, sign: f64, delta: f64) -> f64 {
         let theta_i = sign * (FRAC_PI_2 - delta);
         let m = shape.bell(self.beta, 0.5 * (theta_i + self.theta_o) - self.alpha);
         let ratio = delta.sin() / (0.5 * (self.theta_o - theta_i)).cos();
@@ -59,7 +60,8 @@ impl Longitudinal {
     }
 
     /// Returns the share of the lobe's energy that is discarded.
-    fn discarded(&self, shape: Shape) -> Bounded {
+    #[must_use]
+    pub fn discarded(&self, shape: Shape) -> Bounded {
         self.energy(shape, CAP).over(self.energy(shape, FRAC_PI_2))
     }
 }
@@ -98,7 +100,7 @@ fn share_of(shape: Shape, params: &HairParams, theta_o: f64) -> Bounded {
 }
 
 /// Returns the share of a hair's samples that are discarded.
-fn discarded(params: &HairParams, theta_o: f64) -> f64 {
+pub fn discarded(params: &HairParams, theta_o: f64) -> f64 {
     let wo = [theta_o.sin(), theta_o.cos(), 0.0];
     let hair = HairReference::prepare(&params.desc().map(f64::from), Shape::Gaussian, wo);
     let shares = hair.probabilities();
@@ -113,7 +115,8 @@ fn discarded(params: &HairParams, theta_o: f64) -> f64 {
 
 /// Returns the discarded share of a lobe of width `beta` with its peak on the axis, opposite to a viewer at `theta_o` above the normal
 /// plane.
-fn pointed(shape: Shape, beta: f64, theta_o: f64) -> Bounded {
+#[must_use]
+pub fn pointed(shape: Shape, beta: f64, theta_o: f64) -> Bounded {
     Longitudinal {
         alpha: 0.5 * (theta_o - FRAC_PI_2),
         beta,
@@ -199,46 +202,4 @@ pub(super) fn claim() -> Result<Claim, ParamError> {
         ),
     ]);
     Ok(STATEMENT.judge(figures, sentence))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn beyond_the_cap_it_is_the_reference() {
-        let params = HairParams::bright();
-        let p = params.desc().map(f64::from);
-        for (theta_o, delta) in [(0.3_f64, 2e-5_f64), (-1.2, 0.4), (1.5, 1.1)] {
-            let hair =
-                HairReference::prepare(&p, Shape::Cauchy, [theta_o.sin(), theta_o.cos(), 0.0]);
-            for sign in [-1.0, 1.0] {
-                let wi = [sign * delta.cos(), delta.sin(), 0.0];
-                let want = hair.lobe_values(wi)[Lobe::TRT] * delta.sin() * delta.sin();
-                assert!(
-                    (Longitudinal::of(&p, 2, theta_o).energy_at(Shape::Cauchy, sign, delta) / want
-                        - 1.0)
-                        .abs()
-                        < 1e-9,
-                    "{theta_o} {delta}"
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn a_narrow_lobe_loses_the_cube_of_the_cap() {
-        // Integral of x^2 exp(-x^2 / 2 s^2) over [0, e], divided by that over the half line, for e far below s: (e/s)^3 / 3 / sqrt(pi/2).
-        let beta = 2e-3;
-        let want = (CAP / (2.0 * beta)).powi(3) / 3.0 / FRAC_PI_2.sqrt();
-        let got = pointed(Shape::Gaussian, beta, 0.0);
-        assert!((got.value / want - 1.0).abs() < 1e-2, "{got:?} {want}");
-    }
-
-    #[test]
-    fn few_samples_are_discarded() {
-        let got = discarded(&HairParams::bright(), 0.0);
-        // Densities of theta_i at the axis are near 0.05 per rad.
-        assert!((1e-7..1e-5).contains(&got), "{got}");
-    }
 }

@@ -12,21 +12,26 @@ use hairis_instruments::quadrature::{Tolerance, bell_breakpoints, integrate_rect
 use hairis_reference::{CauchyDensity, HairReference, Reference, errata};
 
 /// Returns the interval of `theta_h` as `theta_i` runs over all inclinations, rad.
-pub(super) fn theta_h_interval(theta_o: f64) -> [f64; 2] {
+#[must_use]
+pub fn theta_h_interval(theta_o: f64) -> [f64; 2] {
     [-FRAC_PI_2, FRAC_PI_2].map(|end| 0.5 * (theta_o + end))
 }
 
 /// Longitudinal factor M of a lobe, seen from an inclination; in rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Longitudinal {
-    pub(super) alpha: f64,
-    pub(super) beta: f64,
-    pub(super) theta_o: f64,
+pub struct Longitudinal {
+    /// Centre, rad.
+    pub alpha: f64,
+    /// Deviation, rad.
+    pub beta: f64,
+    /// Inclination of the viewer, rad.
+    pub theta_o: f64,
 }
 
 impl Longitudinal {
     /// Returns the longitudinal term of R, TT or TRT, selected by slot.
-    pub(super) fn of(p: &HairDesc<f64>, lobe: usize, theta_o: f64) -> Self {
+    #[must_use]
+    pub fn of(p: &HairDesc<f64>, lobe: usize, theta_o: f64) -> Self {
         Self {
             alpha: p.alpha[lobe],
             beta: p.beta[lobe],
@@ -36,7 +41,8 @@ impl Longitudinal {
 
     /// Returns the share of the printed sampler's `theta_i` that are valid inclinations. As printed, without the factor of a half, A and B
     /// normalise the density on an interval twice as long as that of `theta_h`.
-    pub(super) fn printed_mass(&self) -> f64 {
+    #[must_use]
+    pub fn printed_mass(&self) -> f64 {
         let Self {
             alpha,
             beta,
@@ -49,7 +55,8 @@ impl Longitudinal {
 }
 
 /// Returns every factor M of the parameter grid: three lobes for each width of R, from each inclination.
-pub(super) fn longitudinal_grid() -> Vec<Longitudinal> {
+#[must_use]
+pub fn longitudinal_grid() -> Vec<Longitudinal> {
     let widths = Grid::FULL
         .beta_r_deg
         .iter()
@@ -79,7 +86,8 @@ fn mixture(shares: &PerLobe<f64>, of: &PerLobe<f64>) -> f64 {
 }
 
 /// Hair of a model, seen from an inclination.
-pub(super) struct Hair {
+#[derive(Debug)]
+pub struct Hair {
     parameters: HairDesc<f64>,
     oracle: HairReference<f64>,
     theta_o: f64,
@@ -87,24 +95,25 @@ pub(super) struct Hair {
 
 /// Figures of a hair, all under constant light and for the mean of RGB.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct HairFigures {
+pub struct HairFigures {
     /// V of uniform sampling.
-    pub(super) uniform: Bounded,
+    pub uniform: Bounded,
     /// V of the published sampler.
-    pub(super) published: Bounded,
+    pub published: Bounded,
     /// V of the published sampler with the printed A and B. Samples off the sphere count, and contribute nothing.
-    pub(super) printed: Bounded,
+    pub printed: Bounded,
     /// V of the published sampler with glints drawn from [0, pi].
     pub(super) whole: Bounded,
     /// Relative bias of an estimator that draws as published and divides by the density whose glint has no end.
-    pub(super) uncut_bias: Bounded,
+    pub uncut_bias: Bounded,
     /// Share of the samples that the printed A and B lose.
-    pub(super) lost: f64,
+    pub lost: f64,
 }
 
 impl HairFigures {
     /// Returns all numbers of the figures, for the journal.
-    pub(super) fn numbers(&self) -> [f64; 11] {
+    #[must_use]
+    pub fn numbers(&self) -> [f64; 11] {
         let Self {
             uniform,
             published,
@@ -122,7 +131,8 @@ impl HairFigures {
     }
 
     /// Restores figures from their numbers.
-    pub(super) fn from_numbers(numbers: [f64; 11]) -> Self {
+    #[must_use]
+    pub fn from_numbers(numbers: [f64; 11]) -> Self {
         let of = |place: usize| Bounded {
             value: numbers[place],
             error: numbers[place + 1],
@@ -139,7 +149,8 @@ impl HairFigures {
 }
 
 impl Hair {
-    pub(super) fn new(model: ModelKind, params: &HairParams, theta_o: f64) -> Self {
+    /// Prepares the hair of a model, seen from the inclination `theta_o` in rad.
+    pub fn new(model: ModelKind, params: &HairParams, theta_o: f64) -> Self {
         let parameters = params.desc().map(f64::from);
         let wo = fibre_direction(theta_o, 0.0).to_array();
         Self {
@@ -206,7 +217,8 @@ impl Hair {
     }
 
     /// Computes all figures of the hair.
-    pub(super) fn found(&self) -> HairFigures {
+    #[must_use]
+    pub fn found(&self) -> HairFigures {
         let all = self.integrals(&self.phi_breakpoints());
         let mean = all[0];
         let v = |k: usize| all[k].over(mean.times(mean)).plus(-1.0);
@@ -254,80 +266,5 @@ impl Hair {
         );
         phi.retain(|x| (0.0..=PI).contains(x));
         phi
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use hairis_harness::efficiency::{Case, by_quadrature};
-    use hairis_instruments::light::Constant;
-
-    #[test]
-    fn figures_come_back_from_their_numbers() {
-        let numbers = core::array::from_fn(|place| place as f64);
-        assert_eq!(HairFigures::from_numbers(numbers).numbers(), numbers);
-    }
-
-    #[test]
-    fn variances_are_those_of_the_whole_sphere() {
-        let params = HairParams::bright();
-        for model in ModelKind::ALL {
-            for theta_o_deg in [0.0_f64, 45.0, 75.0] {
-                let found = Hair::new(model, &params, theta_o_deg.to_radians()).found();
-                let want = by_quadrature(&Case::new(model, &params, theta_o_deg), &Constant).v;
-                for (got, want) in [found.uniform, found.published].into_iter().zip(want) {
-                    assert!(
-                        (got.value - want).abs() < 1e-5 && got.error < 1e-4,
-                        "{model:?}: {got:?} {want}"
-                    );
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_lobe_alone_loses_what_its_mass_says() {
-        // With one lobe, the printed density is the correct one times its mass, so the second moment grows by the inverse of the mass.
-        let mut desc = *HairParams::bright().desc();
-        (desc.i_tt, desc.i_trt) = ([0.0; 3], [0.0; 3]);
-        let params = HairParams::new(&desc).expect("accepted");
-        let found = Hair::new(ModelKind::Gaussian, &params, 0.5).found();
-        let mass = Longitudinal::of(&params.desc().map(f64::from), 0, 0.5).printed_mass();
-        assert!(
-            (found.lost - (1.0 - mass)).abs() < 1e-12 && mass < 0.99,
-            "{found:?} {mass}"
-        );
-        assert!(
-            ((1.0 + found.published.value) / mass - 1.0 - found.printed.value).abs() < 1e-6,
-            "{found:?} {mass}"
-        );
-        assert!(
-            found.uncut_bias.value.abs() < 1e-9,
-            "no glints, no bias: {found:?}"
-        );
-    }
-
-    #[test]
-    fn the_printed_mass_is_that_of_the_printed_constants() {
-        let (alpha, beta, theta_o) = (-0.1, 0.15, 0.4);
-        let span = |[lo, hi]: [f64; 2]| ((hi - alpha) / beta).atan() - ((lo - alpha) / beta).atan();
-        let want =
-            span(theta_h_interval(theta_o)) / span([theta_o - FRAC_PI_2, theta_o + FRAC_PI_2]);
-        let got = Longitudinal {
-            alpha,
-            beta,
-            theta_o,
-        }
-        .printed_mass();
-        assert!(
-            (got - want).abs() < 1e-12 && (got - 0.923).abs() < 5e-4,
-            "{got} {want}"
-        );
-        assert_eq!(
-            longitudinal_grid().len(),
-            6 * 7 * 3,
-            "widths, inclinations and lobes"
-        );
     }
 }

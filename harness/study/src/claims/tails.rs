@@ -18,10 +18,10 @@ const STATEMENT: Statement = Statement {
 };
 
 /// Half the length, in widths, of the interval that stands for the infinite line. A Gaussian beyond it is below double precision.
-const REACH: f64 = 40.0;
+pub const REACH: f64 = 40.0;
 
 /// Returns `(integral of c) (integral of g^2 / c) / (integral of g)^2 - 1` over an interval, for bells of one width and centre.
-fn added(alpha: f64, beta: f64, interval: [f64; 2], cauchy_area: Option<f64>) -> Bounded {
+pub fn added(alpha: f64, beta: f64, interval: [f64; 2], cauchy_area: Option<f64>) -> Bounded {
     let integrand = |x: f64| {
         let [g, c] = [Shape::Gaussian, Shape::Cauchy].map(|shape| shape.bell(beta, x - alpha));
         [g, g * g / c, c]
@@ -34,7 +34,7 @@ fn added(alpha: f64, beta: f64, interval: [f64; 2], cauchy_area: Option<f64>) ->
 }
 
 /// Returns the largest ratio of a Gaussian to a Cauchy, both of peak 1.
-fn largest_weight() -> f64 {
+pub fn largest_weight() -> f64 {
     let weight = |x: f64| Shape::Gaussian.bell(1.0, x) / Shape::Cauchy.bell(1.0, x);
     (0..=8_000)
         .map(|n| weight(f64::from(n) / 1_000.0))
@@ -66,34 +66,4 @@ pub(super) fn claim() -> Claim {
         ("largest weight of a factor on the line, in means", in_means),
     ]);
     STATEMENT.judge(figures, sentence)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use hairis_instruments::sequence::Independent;
-    use hairis_instruments::stats::Moments;
-
-    #[test]
-    fn the_added_variance_is_its_closed_form_and_that_of_samples() {
-        let got = added(0.0, 0.3, [-REACH, REACH].map(|x| 0.3 * x), Some(0.3 * PI));
-        assert!(
-            (got.value - (0.75 * PI.sqrt() - 1.0)).abs() < 1e-9 && got.error < 1e-8,
-            "{got:?}"
-        );
-        let mut from = Independent::new(1, 0);
-        let weights: Moments = (0..100_000)
-            .map(|_| {
-                let x = (PI * (from.next_f64() - 0.5)).tan();
-                Shape::Gaussian.bell(1.0, x) / Shape::Cauchy.bell(1.0, x)
-            })
-            .collect();
-        let z = weights.relative_variance().z_score(got.value);
-        assert!(z.abs() < 4.0, "{z} standard errors");
-    }
-
-    #[test]
-    fn the_largest_weight_is_at_one_width() {
-        assert!((largest_weight() - 2.0 * (-0.5_f64).exp()).abs() < 1e-9);
-    }
 }

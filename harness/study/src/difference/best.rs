@@ -3,7 +3,7 @@
 use core::f64::consts;
 
 /// Range of the factors that are tried, which the kernels accept.
-pub(super) const RANGE: [f64; 2] = [0.5, 4.0];
+pub const RANGE: [f64; 2] = [0.5, 4.0];
 
 /// Relative precision to which the best factor is found.
 const PRECISION: f64 = 1e-6;
@@ -13,7 +13,7 @@ const PRECISION: f64 = 1e-6;
 /// # Errors
 ///
 /// Returns the first error of `f`.
-pub(crate) fn least<E>(mut f: impl FnMut(f64) -> Result<f64, E>) -> Result<f64, E> {
+pub fn least<E>(mut f: impl FnMut(f64) -> Result<f64, E>) -> Result<f64, E> {
     const STEPS: i32 = 16;
     let [low, high] = RANGE.map(f64::ln);
     let at = |step: i32| low + (high - low) * f64::from(step) / f64::from(STEPS);
@@ -40,31 +40,4 @@ pub(crate) fn least<E>(mut f: impl FnMut(f64) -> Result<f64, E>) -> Result<f64, 
         }
     }
     Ok(consts::E.powf(0.5 * (low + high)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use core::convert::Infallible;
-
-    fn least(f: impl Fn(f64) -> f64) -> f64 {
-        let Ok(found) = super::least(|k| Ok::<_, Infallible>(f(k)));
-        found
-    }
-
-    #[test]
-    fn the_least_is_found_wherever_it_is() {
-        for want in [0.6, 1.0, 1.177, 3.7] {
-            let found = least(|k| (k / want).ln().powi(2) + 1.0);
-            assert!((found / want - 1.0).abs() < 1e-5, "{found} for {want}");
-        }
-        // If there are two minima, the deeper one is found.
-        let found = least(|k| (k - 1.0).powi(2).min((k - 3.0).powi(2) - 0.1));
-        assert!((found - 3.0).abs() < 1e-4, "{found}");
-        assert!(
-            (least(|k| k) / RANGE[0] - 1.0).abs() < 1e-5
-                && (least(|k| -k) / RANGE[1] - 1.0).abs() < 1e-5,
-            "ends"
-        );
-    }
 }

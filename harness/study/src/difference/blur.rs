@@ -15,22 +15,21 @@ use hairis_instruments::quadrature::GaussLegendre;
 pub const SIGMA_DEG: f64 = 10.0;
 
 /// Highest degree that is kept.
-pub(super) const DEGREE: usize = 40;
+pub const DEGREE: usize = 40;
 
 /// Number of coefficients of even functions up to [`DEGREE`].
 const COEFFICIENTS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 
 /// Share of each harmonic above [`DEGREE`] that a blur of [`SIGMA_DEG`] leaves, at most.
-#[cfg(test)]
-pub(super) const REST: f64 = 1e-9;
+pub const REST: f64 = 1e-9;
 
 /// Coefficients of a blurred function: orders outermost, degrees from the order upwards.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Harmonics(Vec<f64>);
+pub struct Harmonics(Vec<f64>);
 
 /// Blur, with the directions at which blurred functions are evaluated.
 #[derive(Debug)]
-pub(super) struct Blur {
+pub struct Blur {
     /// Factor on each degree.
     factors: Vec<f64>,
     /// Weight and Legendre functions of each latitude.
@@ -80,7 +79,8 @@ fn legendre(theta: f64) -> Vec<f64> {
 
 /// Returns the factors of a von Mises-Fisher blur on degrees 0 to `last`: ratios of modified spherical Bessel functions of `kappa`, by
 /// downward recurrence.
-fn factors(kappa: f64, last: usize) -> Vec<f64> {
+#[must_use]
+pub fn factors(kappa: f64, last: usize) -> Vec<f64> {
     let mut ratio = 0.0;
     let mut ratios = vec![0.0; last + 1];
     for degree in (1..last + 200).rev() {
@@ -98,7 +98,8 @@ fn factors(kappa: f64, last: usize) -> Vec<f64> {
 
 impl Blur {
     /// Prepares a blur of deviation `sigma` (rad), evaluated at `latitudes` by `longitudes` directions of half a sphere.
-    pub(super) fn new(sigma: f64, latitudes: usize, longitudes: usize) -> Self {
+    #[must_use]
+    pub fn new(sigma: f64, latitudes: usize, longitudes: usize) -> Self {
         let rule = GaussLegendre::new(latitudes);
         let weight = 2.0 * PI / longitudes as f64;
         let cosines = |column: usize| {
@@ -117,7 +118,8 @@ impl Blur {
     }
 
     /// Returns the harmonics of several functions, blurred.
-    pub(super) fn harmonics(&self, rule: &Rule, functions: &[BellValues]) -> Vec<Harmonics> {
+    #[must_use]
+    pub fn harmonics(&self, rule: &Rule, functions: &[BellValues]) -> Vec<Harmonics> {
         let legendre: Vec<Vec<f64>> = rule
             .along
             .iter()
@@ -157,7 +159,8 @@ impl Blur {
     }
 
     /// Returns the values of a blurred function at the directions, one latitude after the other.
-    pub(super) fn values(&self, of: &Harmonics) -> Vec<f64> {
+    #[must_use]
+    pub fn values(&self, of: &Harmonics) -> Vec<f64> {
         let mut values = Vec::with_capacity(self.latitudes.len() * self.cosines.len());
         for (_, legendre) in &self.latitudes {
             let sums = of.on_latitude(legendre);
@@ -167,7 +170,8 @@ impl Blur {
     }
 
     /// Returns the integral over the sphere of `|a - scale b|`, from values at the directions.
-    pub(super) fn l1(&self, a: &[f64], b: &[f64], scale: f64) -> f64 {
+    #[must_use]
+    pub fn l1(&self, a: &[f64], b: &[f64], scale: f64) -> f64 {
         let columns = self.cosines.len();
         let rows = a.chunks_exact(columns).zip(b.chunks_exact(columns));
         let row = |(a, b): (&[f64], &[f64])| {
@@ -201,8 +205,8 @@ impl Harmonics {
     }
 
     /// Returns the integral of the function over the sphere.
-    #[cfg(test)]
-    fn integral(&self) -> f64 {
+    #[must_use]
+    pub fn integral(&self) -> f64 {
         self.0[0] * (4.0 * PI).sqrt()
     }
 
@@ -216,124 +220,12 @@ impl Harmonics {
     }
 
     /// Returns the blurred function's value in a direction.
-    pub(crate) fn at(&self, theta: f64, phi: f64) -> f64 {
+    #[must_use]
+    pub fn at(&self, theta: f64, phi: f64) -> f64 {
         let sums = self.on_latitude(&legendre(theta));
         (0..)
             .zip(sums)
             .map(|(order, sum)| sum * (f64::from(order) * phi).cos())
             .sum()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::lobes::{Kind, Nodes, ViewedHair};
-    use super::*;
-    use core::f64::consts::FRAC_PI_2;
-    use hairis::HairParams;
-    use hairis_instruments::direction::fibre_direction;
-
-    fn blur() -> Blur {
-        Blur::new(SIGMA_DEG.to_radians(), 64, 64)
-    }
-
-    /// Returns a rule without lobes, and a function of `theta` alone on it.
-    fn plain(f: impl Fn(f64) -> f64) -> (Rule, BellValues) {
-        let rule = GaussLegendre::new(128);
-        let along: Nodes = rule
-            .on(-FRAC_PI_2, FRAC_PI_2)
-            .map(|[x, w]| [x, w * x.cos()])
-            .collect();
-        let around: Nodes = rule.on(0.0, PI).map(|[x, w]| [x, 2.0 * w]).collect();
-        let values = BellValues {
-            along: along
-                .iter()
-                .map(|[theta, _]| [f(*theta), 0.0, 0.0])
-                .collect(),
-            around: vec![[1.0, 0.0, 0.0]; around.len()],
-        };
-        (Rule { along, around }, values)
-    }
-
-    #[test]
-    fn the_blur_of_a_constant_is_the_constant() {
-        let (rule, values) = plain(|_| 2.5);
-        let blur = blur();
-        let blurred = &blur.harmonics(&rule, &[values])[0];
-        for value in blur.values(blurred) {
-            assert!((value - 2.5).abs() < 1e-12, "{value}");
-        }
-    }
-
-    #[test]
-    fn the_blur_of_a_cosine_is_a_weaker_cosine() {
-        // A harmonic of degree 1 is weakened by the mean cosine of the kernel.
-        let kappa = 1.0 / SIGMA_DEG.to_radians().powi(2);
-        let (rule, values) = plain(f64::sin);
-        let blurred = &blur().harmonics(&rule, &[values])[0];
-        let want = 1.0 / kappa.tanh() - 1.0 / kappa;
-        assert!(
-            (blurred.at(0.7, 1.0) / 0.7_f64.sin() - want).abs() < 1e-12,
-            "{blurred:?}"
-        );
-    }
-
-    #[test]
-    fn what_is_left_out_is_negligible() {
-        let factors = factors(1.0 / SIGMA_DEG.to_radians().powi(2), 120);
-        assert!(
-            factors.windows(2).all(|pair| pair[1] < pair[0]),
-            "falling: {factors:?}"
-        );
-        assert!(factors[DEGREE + 1] < REST, "{}", factors[DEGREE + 1]);
-        assert!(factors[DEGREE / 2] > REST, "more than is needed");
-    }
-
-    #[test]
-    fn hair_blurred_is_its_integral_with_the_kernel() {
-        let kappa = 1.0 / SIGMA_DEG.to_radians().powi(2);
-        let kernel = |cos: f64| {
-            kappa / (2.0 * PI * (1.0 - (-2.0 * kappa).exp())) * (kappa * (cos - 1.0)).exp()
-        };
-        let view = ViewedHair::new(&HairParams::bright(), 0.9);
-        let (rule, blur) = (view.rule(12), blur());
-        for kind in [Kind::GAUSSIAN, Kind::cauchy(1.0)] {
-            let values = rule.values(&view, kind);
-            let blurred = &blur.harmonics(&rule, core::slice::from_ref(&values))[0];
-            assert!(
-                (blurred.integral() / rule.albedo(&values) - 1.0).abs() < 1e-12,
-                "the integral stays"
-            );
-            let sum: f64 = blur.l1(&blur.values(blurred), &vec![0.0; 64 * 64], 0.0);
-            assert!(
-                (sum / rule.albedo(&values) - 1.0).abs() < 1e-9,
-                "it is not negative: {sum}"
-            );
-            // Next to the highlights, between them, behind the fibre and near a pole.
-            for (theta, phi) in [
-                (-0.9, 0.0),
-                (-0.5, 0.6),
-                (0.4, 2.0),
-                (-1.0, PI),
-                (-1.5, 1.0),
-            ] {
-                let centre = fibre_direction(theta, phi);
-                let mut want = 0.0;
-                for ([theta_i, w_theta], along) in rule.along.iter().zip(&values.along) {
-                    for ([phi_i, w_phi], around) in rule.around.iter().zip(&values.around) {
-                        let value: f64 = along.iter().zip(around).map(|(a, b)| a * b).sum();
-                        for side in [-1.0, 1.0] {
-                            let cos = centre.dot(fibre_direction(*theta_i, side * phi_i));
-                            want += 0.5 * w_theta * w_phi * value * kernel(cos);
-                        }
-                    }
-                }
-                let got = blurred.at(theta, phi);
-                assert!(
-                    (got - want).abs() < 1e-6 * want.abs().max(0.1),
-                    "{kind:?} at {theta} {phi}: {got} {want}"
-                );
-            }
-        }
     }
 }

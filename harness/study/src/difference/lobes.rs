@@ -19,23 +19,26 @@ pub(super) const TERMS: usize = 3;
 
 /// Kind of bell, with the factor on its widths.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Kind {
-    pub(super) shape: Shape,
-    pub(super) factor: f64,
+pub struct Kind {
+    /// Shape of the bell.
+    pub shape: Shape,
+    /// Factor on the widths.
+    pub factor: f64,
     /// Parameters that replace those of the hair.
     refit: Option<HairDesc<f64>>,
 }
 
 impl Kind {
     /// Published model, with Gaussian bells.
-    pub(super) const GAUSSIAN: Self = Self {
+    pub const GAUSSIAN: Self = Self {
         shape: Shape::Gaussian,
         factor: 1.0,
         refit: None,
     };
 
     /// Returns the Cauchy model with its widths times `factor`.
-    pub(super) const fn cauchy(factor: f64) -> Self {
+    #[must_use]
+    pub const fn cauchy(factor: f64) -> Self {
         Self {
             shape: Shape::Cauchy,
             factor,
@@ -44,7 +47,7 @@ impl Kind {
     }
 
     /// Returns the Cauchy model with parameters of its own.
-    pub(super) fn refitted(params: &HairParams) -> Self {
+    pub fn refitted(params: &HairParams) -> Self {
         Self {
             shape: Shape::Cauchy,
             factor: 1.0,
@@ -61,38 +64,41 @@ impl Kind {
 
 /// Hair seen from one inclination.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ViewedHair {
+pub struct ViewedHair {
     parameters: HairDesc<f64>,
     theta_o: f64,
 }
 
 /// Points of a quadrature rule, each with its weight.
-pub(super) type Nodes = Vec<[f64; 2]>;
+pub type Nodes = Vec<[f64; 2]>;
 
 /// Points at which a hair is integrated. They serve every [`Kind`] whose factor is near 1.
 #[derive(Clone, Debug)]
-pub(super) struct Rule {
+pub struct Rule {
     /// Points `theta_i` in rad; weights include the `cos theta_i` of the solid angle.
-    pub(super) along: Nodes,
+    pub along: Nodes,
     /// Points `|phi|` in rad; weights count both signs.
-    pub(super) around: Nodes,
+    pub around: Nodes,
 }
 
 /// Values of the three products of a [`Kind`] at the points of a [`Rule`].
 #[derive(Clone, Debug)]
-pub(super) struct BellValues {
-    pub(super) along: Vec<[f64; TERMS]>,
-    pub(super) around: Vec<[f64; TERMS]>,
+pub struct BellValues {
+    /// Functions of `theta_i`.
+    pub along: Vec<[f64; TERMS]>,
+    /// Functions of `phi`.
+    pub around: Vec<[f64; TERMS]>,
 }
 
 /// Returns the sum of products of two slices.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+#[must_use]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl ViewedHair {
     /// Returns the hair seen from `theta_o`, in rad, within (-pi/2, pi/2).
-    pub(super) fn new(params: &HairParams, theta_o: f64) -> Self {
+    pub fn new(params: &HairParams, theta_o: f64) -> Self {
         Self {
             parameters: params.desc().map(f64::from),
             theta_o,
@@ -100,7 +106,8 @@ impl ViewedHair {
     }
 
     /// Returns the factors that depend on `theta_i`.
-    pub(super) fn along(&self, kind: Kind, theta_i: f64) -> [f64; TERMS] {
+    #[must_use]
+    pub fn along(&self, kind: Kind, theta_i: f64) -> [f64; TERMS] {
         let p = kind.parameters(self);
         let (theta_h, theta_d) = (
             0.5 * (theta_i + self.theta_o),
@@ -115,7 +122,8 @@ impl ViewedHair {
     }
 
     /// Returns the factors that depend on `phi`, which is in [-pi, pi].
-    pub(super) fn around(&self, kind: Kind, phi: f64) -> [f64; TERMS] {
+    #[must_use]
+    pub fn around(&self, kind: Kind, phi: f64) -> [f64; TERMS] {
         let p = kind.parameters(self);
         let bell = |width, x| kind.shape.bell(width, x);
         [
@@ -126,7 +134,8 @@ impl ViewedHair {
     }
 
     /// Returns Gauss-Legendre rules of `order` points on panels that follow the lobes.
-    pub(super) fn rule(&self, order: usize) -> Rule {
+    #[must_use]
+    pub fn rule(&self, order: usize) -> Rule {
         const DISTANCES: [f64; 9] = [-12.0, -5.0, -2.5, -1.0, 0.0, 1.0, 2.5, 5.0, 12.0];
         let p = &self.parameters;
         let rule = GaussLegendre::new(order);
@@ -170,7 +179,8 @@ fn panels(rule: &GaussLegendre, mut breaks: Vec<f64>, [lo, hi]: [f64; 2]) -> Nod
 
 impl Rule {
     /// Returns the values of a model at the points of the rule.
-    pub(super) fn values(&self, view: &ViewedHair, kind: Kind) -> BellValues {
+    #[must_use]
+    pub fn values(&self, view: &ViewedHair, kind: Kind) -> BellValues {
         BellValues {
             along: self
                 .along
@@ -186,7 +196,8 @@ impl Rule {
     }
 
     /// Returns the integral of `S cos theta_i` over the sphere, which is the directional albedo as the mean of RGB.
-    pub(super) fn albedo(&self, of: &BellValues) -> f64 {
+    #[must_use]
+    pub fn albedo(&self, of: &BellValues) -> f64 {
         let integral = |nodes: &Nodes, values: &[[f64; TERMS]]| -> [f64; TERMS] {
             array::from_fn(|j| {
                 nodes
@@ -223,88 +234,4 @@ fn gram(nodes: &Nodes, a: &[[f64; TERMS]], b: &[[f64; TERMS]]) -> [[f64; TERMS];
             .sum()
     };
     array::from_fn(|i| array::from_fn(|j| integral(i, j)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::study::Grid;
-    use hairis::{Gaussian, Material, Published};
-    use hairis_harness::subject::random_hair;
-    use hairis_instruments::direction::fibre_direction;
-    use hairis_instruments::sequence::Independent;
-    use hairis_reference::{HairReference, Reference};
-    use hairis_variants::Cauchy;
-
-    #[test]
-    fn the_products_are_the_reference() {
-        let mut xi = Independent::new(11, 0);
-        for _ in 0..200 {
-            let hair = random_hair(&mut xi).expect("within range");
-            let theta_o = 1.5 * (2.0 * xi.next_f64() - 1.0);
-            let view = ViewedHair::new(&hair, theta_o);
-            for kind in [Kind::GAUSSIAN, Kind::cauchy(1.0), Kind::cauchy(0.8)] {
-                let parameters = hair.desc().map(f64::from).with_width_factor(kind.factor);
-                let oracle = HairReference::prepare(
-                    &parameters,
-                    kind.shape,
-                    fibre_direction(theta_o, 0.3).to_array(),
-                );
-                let (theta_i, phi) = (
-                    1.55 * (2.0 * xi.next_f64() - 1.0),
-                    PI * (2.0 * xi.next_f64() - 1.0),
-                );
-                let (along, around) = (view.along(kind, theta_i), view.around(kind, phi));
-                let got: f64 = along.iter().zip(around).map(|(a, b)| a * b).sum();
-                let s = oracle.eval(fibre_direction(theta_i, 0.3 - phi).to_array());
-                let want = theta_i.cos() * s.iter().sum::<f64>() / 3.0;
-                assert!(
-                    (got - want).abs() <= 1e-11 * want + 1e-13,
-                    "{kind:?} at {theta_i} {phi}: {got} {want}"
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn albedos_are_those_of_the_kernels() {
-        for index in (0..Grid::QUICK.len()).step_by(5) {
-            let cell = Grid::QUICK.cell(index);
-            let (params, theta_o) = (
-                cell.params().expect("accepted"),
-                f64::from(cell.theta_o_deg).to_radians(),
-            );
-            let wo = fibre_direction(theta_o, 0.0);
-            let view = ViewedHair::new(&params, theta_o);
-            let rule = view.rule(8);
-            let kernels = [
-                (
-                    Kind::GAUSSIAN,
-                    Material::new(&Published(Gaussian), &params)
-                        .prepare(wo.as_vec3())
-                        .albedo(),
-                ),
-                (
-                    Kind::cauchy(1.0),
-                    Material::new(&Cauchy::PAPER.model(), &params)
-                        .prepare(wo.as_vec3())
-                        .albedo(),
-                ),
-            ];
-            for (kind, lobes) in kernels {
-                let want = lobes
-                    .0
-                    .as_flattened()
-                    .iter()
-                    .map(|c| f64::from(*c))
-                    .sum::<f64>()
-                    / 3.0;
-                let got = rule.albedo(&rule.values(&view, kind));
-                assert!(
-                    (got / want - 1.0).abs() < 1e-4,
-                    "cell {index} {kind:?}: {got} {want}"
-                );
-            }
-        }
-    }
 }

@@ -33,11 +33,12 @@ pub struct Norms {
 }
 
 /// Count of the numbers of [`Differences`].
-pub(super) const NUMBERS: usize = 11;
+pub const NUMBERS: usize = 11;
 
 impl Differences {
     /// Returns all numbers of the differences, for the journal.
-    pub(super) fn numbers(&self) -> [f64; NUMBERS] {
+    #[must_use]
+    pub fn numbers(&self) -> [f64; NUMBERS] {
         let Self {
             k,
             albedo_gaussian,
@@ -74,7 +75,7 @@ impl Differences {
 
 /// Hair with the values of its Gaussian model at the points of its rule.
 #[derive(Debug)]
-pub(super) struct HairValues {
+pub struct HairValues {
     view: ViewedHair,
     rule: Rule,
     /// Rule of twice the order, because the magnitude of a difference has kinks at the angles at which the models cross.
@@ -86,7 +87,8 @@ pub(super) struct HairValues {
 
 impl HairValues {
     /// Prepares a hair; `order` is the order of the rules on each panel.
-    pub(super) fn new(view: ViewedHair, order: usize) -> Self {
+    #[must_use]
+    pub fn new(view: ViewedHair, order: usize) -> Self {
         let rule = view.rule(order);
         let gaussian = rule.values(&view, Kind::GAUSSIAN);
         let square = rule.product(&gaussian, &gaussian);
@@ -100,7 +102,8 @@ impl HairValues {
     }
 
     /// Returns the square of the relative L2 difference of the Cauchy model with its widths times `k`.
-    pub(super) fn square_error(&self, k: f64) -> f64 {
+    #[must_use]
+    pub fn square_error(&self, k: f64) -> f64 {
         self.square_of(&self.rule.values(&self.view, Kind::cauchy(k)), 1.0)
     }
 
@@ -114,7 +117,8 @@ impl HairValues {
     }
 
     /// Returns the figures of several models.
-    pub(super) fn figures(&self, kinds: &[Kind], blur: &Blur) -> Vec<Differences> {
+    #[must_use]
+    pub fn figures(&self, kinds: &[Kind], blur: &Blur) -> Vec<Differences> {
         let mut models = vec![self.gaussian.clone()];
         models.extend(kinds.iter().map(|kind| self.rule.values(&self.view, *kind)));
         let albedos: Vec<f64> = models.iter().map(|model| self.rule.albedo(model)).collect();
@@ -177,100 +181,5 @@ impl HairValues {
             }
         }
         sums
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::blur::SIGMA_DEG;
-    use super::super::{LATITUDES, ORDER};
-    use super::*;
-    use crate::study::Grid;
-    use core::f64::consts::PI;
-    use hairis::HairParams;
-    use hairis::params::HairDesc;
-    use hairis_reference::Real;
-
-    fn blur(size: usize) -> Blur {
-        Blur::new(SIGMA_DEG.to_radians(), size, size)
-    }
-
-    fn hair(index: usize, order: usize) -> HairValues {
-        let cell = Grid::FULL.cell(index);
-        let params = cell.params().expect("accepted");
-        HairValues::new(
-            ViewedHair::new(&params, f64::from(cell.theta_o_deg).to_radians()),
-            order,
-        )
-    }
-
-    #[test]
-    fn a_model_does_not_differ_from_itself() {
-        let found = hair(1700, ORDER).figures(&[Kind::GAUSSIAN], &blur(LATITUDES))[0];
-        for (place, value) in found.numbers()[3..].iter().enumerate() {
-            // The squares of L2 cancel to some 1e-16, their roots to 1e-8.
-            assert!(*value < 1e-7, "{place}: {value}");
-        }
-    }
-
-    #[test]
-    fn narrow_highlights_differ_as_their_bells_do() {
-        // R alone, so narrow that nothing else changes across it: the norms are those of two bells on a line.
-        let black = [0.0; 3];
-        let desc = HairDesc {
-            beta: [0.002; 3],
-            i_tt: black,
-            i_trt: black,
-            ..*HairParams::bright().desc()
-        };
-        let hair = HairValues::new(
-            ViewedHair::new(&HairParams::new(&desc).expect("accepted"), 0.3),
-            ORDER,
-        );
-        for k in [1.0, 0.797_884_6, 1.177_41] {
-            let got = hair.square_error(k).sqrt();
-            // Integrals over the line, in widths: of g^2, of c^2 and of g c.
-            let squares = [PI.sqrt(), 0.5 * PI * k];
-            let cross = k * PI * (0.5 * k * k).exp() * Real::erfc(k / 2.0_f64.sqrt());
-            let want = ((squares[0] + squares[1] - 2.0 * cross) / squares[0]).sqrt();
-            assert!((got - want).abs() < 2e-4, "{k}: {got} {want}");
-        }
-    }
-
-    #[test]
-    fn figures_do_not_depend_on_the_resolution() {
-        let mut worst = [0.0_f64; NUMBERS - 1];
-        // Narrow and wide hair, glints and none, from the side and along the fibre.
-        for index in (0..Grid::FULL.len()).step_by(89) {
-            // Parameters of its own, as far from those of the hair as fits are.
-            let moved = Grid::FULL.cell(index).params().expect("accepted");
-            let desc = moved.desc();
-            let moved = HairParams::new(&HairDesc {
-                alpha: desc.alpha.map(|alpha| alpha + 0.2 * desc.beta[1]),
-                beta: desc.beta.map(|beta| 0.7 * beta),
-                gamma_tt: 0.7 * desc.gamma_tt,
-                phi_g: desc.phi_g + 0.3 * desc.gamma_g,
-                gamma_g: 0.7 * desc.gamma_g,
-                i_g: 1.3 * desc.i_g,
-                ..*desc
-            });
-            let kinds = [
-                Kind::cauchy(1.0),
-                Kind::cauchy(0.797_884_6),
-                Kind::cauchy(1.3),
-                Kind::refitted(&moved.expect("accepted")),
-            ];
-            let coarse = hair(index, ORDER).figures(&kinds, &blur(LATITUDES));
-            let fine = hair(index, 2 * ORDER).figures(&kinds, &blur(2 * LATITUDES));
-            for (coarse, fine) in coarse.iter().zip(&fine) {
-                // The first is the factor on the widths.
-                let pairs = coarse.numbers().into_iter().zip(fine.numbers()).skip(1);
-                for (place, (a, b)) in pairs.enumerate() {
-                    worst[place] = worst[place].max((a / b - 1.0).abs());
-                }
-            }
-        }
-        println!("largest changes on doubling the resolution: {worst:?}");
-        assert!(worst.iter().all(|change| *change < 1e-3), "{worst:?}");
     }
 }

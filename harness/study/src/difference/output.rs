@@ -27,16 +27,20 @@ const NORMS: [Figure; 8] = [
 
 /// Geometric mean, median, least and most of some figures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Summary {
-    pub(crate) geometric_mean: f64,
-    pub(crate) median: f64,
-    pub(crate) least: f64,
-    pub(crate) most: f64,
+pub struct Summary {
+    /// Geometric mean.
+    pub geometric_mean: f64,
+    /// Median.
+    pub median: f64,
+    /// Least.
+    pub least: f64,
+    /// Most.
+    pub most: f64,
 }
 
 impl Summary {
     /// Summarises positive numbers; all fields are NaN if there are none.
-    pub(crate) fn of(values: impl Iterator<Item = f64>) -> Self {
+    pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.collect();
         values.sort_by(f64::total_cmp);
         let logarithm = values.iter().map(|x| x.ln()).sum::<f64>() / values.len() as f64;
@@ -198,51 +202,4 @@ impl Difference {
 /// Returns the albedo of the Cauchy model over that of the Gaussian one.
 pub(crate) fn albedo_ratio(of: &Differences) -> f64 {
     of.albedo_cauchy / of.albedo_gaussian
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::study::Grid;
-    use hairis_harness::journal::Journal;
-
-    #[test]
-    fn summaries_are_of_all_the_figures() {
-        let found = Summary::of([8.0, 1.0, 2.0].into_iter());
-        assert!(
-            (found.geometric_mean - 16.0_f64.cbrt()).abs() < 1e-12,
-            "{found:?}"
-        );
-        assert_eq!((found.median, found.least, found.most), (2.0, 1.0, 8.0));
-    }
-
-    #[test]
-    fn every_row_has_every_column() {
-        let grid = Grid {
-            theta_o_deg: &[45.0],
-            ..Grid::QUICK
-        };
-        let found = Difference::over(grid, &Journal::default(), &|_, _| ()).expect("accepted");
-        let mut csv = Vec::new();
-        found.columns().write_csv(&mut csv).expect("written");
-        let fields: Vec<usize> = csv
-            .split(|byte| *byte == b'\n')
-            .map(|row| row.split(|b| *b == b',').count())
-            .collect();
-        assert_eq!(
-            fields.len(),
-            found.rows.len() + 2,
-            "names, rows and the end"
-        );
-        assert!(
-            fields[..=found.rows.len()]
-                .iter()
-                .all(|count| *count == fields[0]),
-            "ragged"
-        );
-        for table in found.tables() {
-            let text = table.to_text(Some(u16::MAX));
-            assert!(text.lines().count() > 4 && !text.contains("n/a"), "{text}");
-        }
-    }
 }

@@ -34,17 +34,7 @@ pub(super) fn minimise(
     if x.is_empty() {
         return Ok((*start, 0));
     }
-    let [lower, upper] = variables.bounds();
-    let problem = Distance {
-        model,
-        points,
-        variables: &variables,
-        norm: config.norm,
-        scale: Scale::new(points, config.norm),
-        rows: Rows::new(points),
-        lower,
-        upper,
-    };
+    let problem = Distance::new(model, points, &variables, config.norm);
     let solver = Lbfgsb::new()
         .with_m_capacity(HISTORY)
         .with_relative_cost_reduction_tolerance(REDUCTION);
@@ -112,7 +102,8 @@ impl Rows {
 }
 
 /// Distance of a model from a look, as the optimiser's problem.
-struct Distance<'a> {
+#[derive(Debug)]
+pub struct Distance<'a> {
     model: ModelId,
     points: &'a Points,
     variables: &'a Variables,
@@ -123,7 +114,23 @@ struct Distance<'a> {
     upper: Vec<f64>,
 }
 
-impl Distance<'_> {
+impl<'a> Distance<'a> {
+    /// Makes the problem of a model whose free numbers are `variables`, from the look at `points`.
+    #[must_use]
+    pub fn new(model: ModelId, points: &'a Points, variables: &'a Variables, norm: Norm) -> Self {
+        let [lower, upper] = variables.bounds();
+        Self {
+            model,
+            points,
+            variables,
+            norm,
+            scale: Scale::new(points, norm),
+            rows: Rows::new(points),
+            lower,
+            upper,
+        }
+    }
+
     /// Returns the distance. Appends the weights of S, which are its derivatives by the values of every row, to `weights` if given.
     fn distance(
         &self,
@@ -244,62 +251,5 @@ impl Constraints for Distance<'_> {
 
     fn constraints(&self) -> <Self::Set as ConstraintDescription>::Borrowed<'_> {
         ConstraintSet::new().with_bounds(BoxBounds::new(Some(&self.lower), Some(&self.upper)))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::Look;
-    use super::*;
-
-    #[test]
-    fn derivatives_are_differences_of_the_distance() {
-        const STEP: f64 = 2e-3;
-        let (_, from) = ModelId::Gaussian.presets().next().expect("a preset");
-        let look = Look {
-            model: ModelId::Gaussian,
-            values: from,
-        };
-        for to in [ModelId::Cauchy, ModelId::Chiang] {
-            for norm in [Norm::L1, Norm::L2, Norm::Blurred] {
-                let config = FitConfig {
-                    norm,
-                    views: vec![-0.3, 0.6],
-                    weights: vec![1.0, 2.0],
-                    ..FitConfig::default()
-                };
-                let points = Points::new(&look, to, &config, 0).expect("legal values");
-                let variables = Variables::new(&to.measured(), &[]);
-                let x: Vec<f64> = variables.start().iter().map(|x| x + 0.05).collect();
-                let x = variables.clamped(x);
-                let [lower, upper] = variables.bounds();
-                let problem = Distance {
-                    model: to,
-                    points: &points,
-                    variables: &variables,
-                    norm,
-                    scale: Scale::new(&points, norm),
-                    rows: Rows::new(&points),
-                    lower,
-                    upper,
-                };
-                let (cost, slopes) = problem.cost_and_gradient(&x).expect("legal values");
-                let same = problem.cost(&x).expect("legal values");
-                assert!((cost - same).abs() < 1e-12, "{cost} {same}");
-                let most = slopes
-                    .iter()
-                    .fold(0.0, |most: f64, slope| most.max(slope.abs()));
-                for (place, slope) in slopes.iter().enumerate() {
-                    let [up, down] = [STEP, -STEP].map(|step| {
-                        let mut x = x.clone();
-                        x[place] += step;
-                        problem.cost(&x).expect("legal values")
-                    });
-                    let want = (up - down) / (2.0 * STEP);
-                    let error = (slope - want).abs() / most;
-                    assert!(error < 5e-3, "{to:?} {norm:?} {place}: {slope} {want}");
-                }
-            }
-        }
     }
 }

@@ -25,13 +25,15 @@ struct Variable {
 
 /// Free numbers of values: those of fields that are given, not fixed, and not words.
 #[derive(Clone, Debug)]
-pub(super) struct Variables {
+pub struct Variables {
     base: Values,
     all: Vec<Variable>,
 }
 
 impl Variables {
-    pub(super) fn new(base: &Values, fixed: &[String]) -> Self {
+    /// Makes the variables of values, without the fields of fixed names.
+    #[must_use]
+    pub fn new(base: &Values, fixed: &[String]) -> Self {
         let mut all = Vec::new();
         for (index, field) in base.fields().iter().enumerate() {
             let is_word = matches!(field.kind, Kind::Word(_));
@@ -46,7 +48,8 @@ impl Variables {
     }
 
     /// Returns the variables of the values.
-    pub(super) fn start(&self) -> Vec<f64> {
+    #[must_use]
+    pub fn start(&self) -> Vec<f64> {
         let of = |one: &Variable| one.of(f64::from(self.base.numbers_at(one.index)[one.place]));
         self.clamped(self.all.iter().map(of).collect())
     }
@@ -64,12 +67,14 @@ impl Variables {
     }
 
     /// Returns the least and the largest of each variable.
-    pub(super) fn bounds(&self) -> [Vec<f64>; 2] {
+    #[must_use]
+    pub fn bounds(&self) -> [Vec<f64>; 2] {
         [0, 1].map(|end| self.all.iter().map(|one| one.range[end]).collect())
     }
 
     /// Clamps variables to their bounds.
-    pub(super) fn clamped(&self, mut x: Vec<f64>) -> Vec<f64> {
+    #[must_use]
+    pub fn clamped(&self, mut x: Vec<f64>) -> Vec<f64> {
         for (x, one) in x.iter_mut().zip(&self.all) {
             *x = x.clamp(one.range[0], one.range[1]);
         }

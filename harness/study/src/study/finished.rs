@@ -21,7 +21,8 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug)]
 pub struct Study {
     pub(super) header: Header,
-    pub(super) cells: Vec<Vec<Measured>>,
+    /// Rows of each cell of the grid.
+    pub cells: Vec<Vec<Measured>>,
     /// Rows of the materials, each seen from the inclinations of the grid in turn.
     pub(super) materials: Vec<Vec<Measured>>,
     /// Times on this machine, unknown until [`time`](Self::time).

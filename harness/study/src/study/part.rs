@@ -130,7 +130,7 @@ impl Header {
 }
 
 /// Count of the numbers in a row of a cell.
-const NUMBERS: usize = 15;
+pub const NUMBERS: usize = 15;
 
 /// Figures of a finished cell, row by row: mean, V and divergence, each with its standard error, the largest weight and the largest
 /// contribution; then V of one ray by one-sample MIS and from each size of pool, each with its standard error, and the bias of pools. NaN
@@ -144,7 +144,9 @@ pub struct Finished {
 }
 
 impl Finished {
-    pub(super) fn of(cell: usize, rows: &[Measured]) -> Self {
+    /// Makes the line of a cell from its figures.
+    #[must_use]
+    pub fn of(cell: usize, rows: &[Measured]) -> Self {
         let row = |of: &Measured| {
             let pair = |of: Estimate| [of.value, of.standard_error];
             let [mean, v, kl] = [of.figures.mean, of.figures.v, of.figures.kl].map(pair);
@@ -170,7 +172,9 @@ impl Finished {
         }
     }
 
-    pub(super) fn measured(&self) -> Vec<Measured> {
+    /// Returns the figures of the rows.
+    #[must_use]
+    pub fn measured(&self) -> Vec<Measured> {
         let row = |row: &[Option<f64>; NUMBERS]| {
             let number = |place: usize| row[place].unwrap_or(f64::NAN);
             let of = |place: usize| Estimate {
@@ -245,7 +249,11 @@ pub fn read(path: &Path) -> Result<Read, Error> {
 }
 
 /// Parses the part in `bytes`; `None` if not even its first line is whole.
-fn parse(path: &Path, bytes: &[u8]) -> Result<Option<Read>, Error> {
+///
+/// # Errors
+///
+/// Returns [`Error::Part`] if the content is damaged beyond its last line.
+pub fn parse(path: &Path, bytes: &[u8]) -> Result<Option<Read>, Error> {
     let Some(last) = bytes.iter().rposition(|byte| *byte == b'\n') else {
         return Ok(None);
     };
@@ -368,6 +376,3 @@ impl Part {
         self.0.append(&line)
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -5,7 +5,7 @@ mod findings;
 mod looks;
 mod maps;
 mod rays;
-mod tables;
+pub mod tables;
 
 use super::finished::Study;
 use crate::difference::{Difference, SIGMA_DEG};

@@ -152,6 +152,8 @@ impl Study {
     }
 }
 
-pub(super) fn shown(of: Estimate) -> String {
+/// Returns an estimate as tables show it.
+#[must_use]
+pub fn shown(of: Estimate) -> String {
     number::estimate(&of)
 }

@@ -13,18 +13,21 @@ use hairis_instruments::table::Table;
 
 /// Ratios of V over the cells of a grid.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Gain {
-    pub(crate) geometric_mean: Estimate,
+pub struct Gain {
+    /// Geometric mean of the ratios.
+    pub geometric_mean: Estimate,
     /// Median cell, with its own standard error, which is larger than that of the median.
-    pub(crate) median: Estimate,
+    pub median: Estimate,
     /// First and third quartile of the ratios.
-    pub(crate) quartiles: [f64; 2],
+    pub quartiles: [f64; 2],
     /// Shares of the cells that are above 1 and below it by more than two standard errors.
-    pub(crate) shares: [f64; 2],
-    pub(crate) least: Estimate,
-    pub(crate) most: Estimate,
+    pub shares: [f64; 2],
+    /// Least ratio.
+    pub least: Estimate,
+    /// Largest ratio.
+    pub most: Estimate,
     /// Number of cells that are left out.
-    pub(crate) unsure: usize,
+    pub unsure: usize,
 }
 
 /// Returns the first V over the second; `None` if one of them is too uncertain.
@@ -37,7 +40,7 @@ pub(super) fn sure_ratio([base, other]: [Estimate; 2]) -> Option<Estimate> {
 ///
 /// The standard error of the geometric mean is that of its figures, for this grid. Both samplers use the same directions of the light, so
 /// errors of the ratios are, if anything, overestimated.
-pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
+pub fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
     let (mut ratios, mut unsure) = (Vec::new(), 0);
     for pair in pairs {
         match sure_ratio(pair) {
@@ -95,7 +98,8 @@ impl Study {
     }
 
     /// Returns V of `base` over V of `other`; `None` if no cell is sure.
-    pub(super) fn gain(&self, pair: [Estimator; 2], light: usize) -> Option<Gain> {
+    #[must_use]
+    pub fn gain(&self, pair: [Estimator; 2], light: usize) -> Option<Gain> {
         gain(self.pairs(pair, light))
     }
 
@@ -241,44 +245,5 @@ pub(super) fn mean_of<'a>(
     Estimate {
         value: sum / n,
         standard_error: f64::sqrt(square) / n,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn v(value: f64, standard_error: f64) -> Estimate {
-        Estimate {
-            value,
-            standard_error,
-        }
-    }
-
-    #[test]
-    fn gains_are_geometric_and_leave_out_what_is_unsure() {
-        let nan = v(f64::NAN, f64::NAN);
-        let pairs = [
-            [v(2.0, 0.02), v(1.0, 0.0)],
-            [v(8.0, 0.08), v(1.0, 0.0)],
-            [v(1.0, 0.0), v(100.0, 30.0)],
-            [nan, v(1.0, 0.0)],
-        ];
-        let gain = gain(pairs.into_iter()).expect("two cells");
-        assert!((gain.geometric_mean.value - 4.0).abs() < 1e-12);
-        assert!((gain.geometric_mean.standard_error - 4.0 * 0.01 / 2.0_f64.sqrt()).abs() < 1e-12);
-        assert_eq!(
-            (gain.least.value, gain.most.value, gain.unsure),
-            (2.0, 8.0, 2)
-        );
-        assert_eq!(
-            (gain.median.value, gain.quartiles, gain.shares),
-            (2.0, [2.0, 2.0], [0.5, 0.0])
-        );
-        assert_eq!(
-            super::gain([[nan, nan]].into_iter()),
-            None,
-            "nothing is sure"
-        );
     }
 }

@@ -82,7 +82,8 @@ pub(super) fn all(of: &Study) -> [Table; 3] {
 }
 
 /// Returns the table of the verdicts in a `claims.json`; `None` if it holds none.
-pub(super) fn claims(of: &Value) -> Option<Table> {
+#[must_use]
+pub fn claims(of: &Value) -> Option<Table> {
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     let mut table =
         Table::new("Each claim, and what is left of it").texts(["claim", "verdict", "found"]);
@@ -106,32 +107,4 @@ pub(super) fn claims(of: &Value) -> Option<Table> {
             "From claims.json, written by {command} of commit {commit}; verdicts follow from figures alone."
         ))
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::json;
-
-    #[test]
-    fn claims_are_shown_with_their_verdicts_or_not_at_all() {
-        let claim = json!({ "quotation": "always", "source": "5", "verdict": "false", "sentence": "not here" });
-        let table = claims(&json!({ "claims": [claim], "machine": { "commit": "abc" } }))
-            .expect("one claim");
-        let text = table.to_text(Some(u16::MAX));
-        assert!(
-            ["always", "(5)", "false", "not here", "commit abc"]
-                .iter()
-                .all(|words| text.contains(words)),
-            "{text}"
-        );
-        for nothing in [
-            json!({}),
-            json!([]),
-            json!({ "claims": [] }),
-            json!({ "claims": 7 }),
-        ] {
-            assert_eq!(claims(&nothing), None, "{nothing}");
-        }
-    }
 }

@@ -1,6 +1,11 @@
-use super::*;
-use crate::study::Plan;
+//! Part files: finished cells, and damage.
+
+use hairis_instruments::error::Error;
 use hairis_instruments::light::Sky;
+use hairis_instruments::shard::Shard;
+use hairis_study::study::Plan;
+use hairis_study::study::part::*;
+use std::fs;
 
 fn header(seed: u64) -> Header {
     let sky = Sky::default().environment();

@@ -1,8 +1,11 @@
-//! Tests of fits whose answer is known, and of fits that may not be worse than their start.
+//! Fits of models to each other.
 
-use super::*;
+mod objective;
+
 use hairis_instruments::progress::Progress;
+use hairis_study::fit::*;
 use hairis_variants::Kind;
+use hairis_variants::{ModelId, Values};
 
 fn look(model: ModelId, preset: &str) -> Look {
     let (_, values) = model
@@ -145,15 +148,18 @@ fn weights_count_by_their_ratios() {
 
 #[test]
 fn the_distance_is_that_of_another_quadrature() {
-    use crate::difference::Difference;
-    use crate::study::Grid;
     use hairis_harness::journal::Journal;
+    use hairis_study::difference::Difference;
+    use hairis_study::study::Grid;
     let grid = Grid {
         theta_o_deg: &[45.0],
         ..Grid::QUICK
     };
     let exact = Difference::over(grid, &Journal::default(), &|_, _| ()).expect("accepted");
-    for (cell, row) in grid.cells().zip(exact.of(crate::difference::Width::Paper)) {
+    for (cell, row) in grid
+        .cells()
+        .zip(exact.of(hairis_study::difference::Width::Paper))
+    {
         let values = hairis_variants::Parameters::values(&cell.params().expect("accepted"));
         let look = Look {
             model: ModelId::Gaussian,
@@ -204,9 +210,12 @@ fn the_distance_is_that_of_another_quadrature() {
 /// its inclinations. With `HAIRIS_RECORD=write` in the environment, writes the record.
 #[test]
 fn refits_are_those_recorded() {
-    use crate::study::Grid;
     use core::fmt::Write as _;
-    const RECORD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../benches/records/refits.csv");
+    use hairis_study::study::Grid;
+    const RECORD: &str = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../benches/records/refits.csv"
+    );
     let pairs = [
         (ModelId::Gaussian, ModelId::Cauchy),
         (ModelId::Cauchy, ModelId::Gaussian),

@@ -1,9 +1,16 @@
-//! Tests of names, keys, agreement with quadrature, and checks.
+//! Names and keys of materials, agreement with quadrature, and checks.
 
-use super::*;
-use crate::efficiency::intensity;
+use hairis_harness::efficiency::intensity;
+use hairis_harness::lights::Lights;
+use hairis_harness::materials::*;
+use hairis_harness::rays::RaySubject;
+use hairis_harness::variance::SampleBudget;
+use hairis_instruments::light::Constant;
 use hairis_instruments::light::{Light, Sky};
 use hairis_instruments::quadrature::SphereIntegrator;
+use hairis_instruments::stats::Estimate;
+use hairis_reference::reference;
+use hairis_variants::ModelId;
 
 const BUDGET: SampleBudget = SampleBudget {
     samples: 1 << 17,

@@ -1,10 +1,7 @@
-//! Tests against references and closed forms, of determinism, and of times and prices.
+//! Rays against references and closed forms, of determinism, and of times and prices.
 
-use super::equal_time::PRICES_US;
-use super::measure::pose;
-use super::result::occluded;
-use super::*;
-use crate::efficiency::{self, Budget, EfficiencyConfig, EfficiencyResult, THETA_O_DEG};
+use hairis_harness::efficiency::{self, Budget, EfficiencyConfig, EfficiencyResult, THETA_O_DEG};
+use hairis_harness::rays::*;
 use hairis_instruments::light::{Environment, Light, Sky};
 use hairis_instruments::sequence::{Independent, XiSource};
 use hairis_instruments::stats::Estimate;
@@ -42,12 +39,12 @@ fn sky() -> &'static (Environment, EfficiencyResult) {
     })
 }
 
-fn rows(
+fn rows_of(
     config: &RaysConfig<'_>,
     subjects: &[RaySubject],
     references: &EfficiencyResult,
 ) -> Vec<RayRow> {
-    run::rows(
+    rows(
         config,
         subjects,
         &config.lights.all(),
@@ -71,7 +68,7 @@ fn a_ray_of_4_and_4_candidates_is_worth_8_of_mis_and_of_8_and_8_15() {
     let subjects: Vec<RaySubject> = RaySubject::all()
         .filter(|subject| subject.sampler() != "uniform")
         .collect();
-    let rows = rows(&config(map, 512), &subjects, references);
+    let rows = rows_of(&config(map, 512), &subjects, references);
     let under_sky: Vec<&RayRow> = rows.iter().filter(|row| row.light == map.name()).collect();
     assert_eq!(under_sky.len(), subjects.len());
     let of_all = |pick: &dyn Fn(&RayFigures) -> Estimate| {
@@ -107,7 +104,7 @@ fn a_ray_of_4_and_4_candidates_is_worth_8_of_mis_and_of_8_and_8_15() {
             );
         }
     }
-    let check = run::check(&rows);
+    let check = check(&rows);
     assert!(check.passed(), "{check:#?}");
     assert!(
         check.tests > 20 * check.untested,
@@ -124,7 +121,7 @@ fn one_ray_obeys_the_law_of_visibility() {
         .filter(|subject| subject.sampler() == "matched")
         .collect();
     let mut scores = Vec::new();
-    for row in rows(&config(map, 1024), &subjects, references) {
+    for row in rows_of(&config(map, 1024), &subjects, references) {
         for pose in &row.poses {
             for (size, pool) in pose
                 .figures
@@ -154,7 +151,7 @@ fn plain_estimators_have_the_variances_of_their_references() {
     let subjects: Vec<RaySubject> = RaySubject::all()
         .filter(|subject| subject.sampler() == "published")
         .collect();
-    for row in rows(&config(map, 512), &subjects, references)
+    for row in rows_of(&config(map, 512), &subjects, references)
         .iter()
         .filter(|row| row.light == "sun")
     {
@@ -207,7 +204,7 @@ fn rows_depend_on_the_seed_alone_and_black_maps_are_no_failures() {
             .num_threads(threads)
             .build()
             .expect("threads");
-        serde_json::to_string(&pool.install(|| rows(&config, &subjects, &references)))
+        serde_json::to_string(&pool.install(|| rows_of(&config, &subjects, &references)))
             .expect("serialises")
     };
     assert!(
@@ -236,10 +233,10 @@ fn a_wrong_mean_fails_the_check() {
     let subjects: Vec<RaySubject> = RaySubject::all()
         .filter(|subject| subject.model() == "kajiya-kay")
         .collect();
-    let mut all = rows(&config(map, 512), &subjects, references);
-    assert!(run::check(&all).passed(), "{:#?}", run::check(&all));
+    let mut all = rows_of(&config(map, 512), &subjects, references);
+    assert!(check(&all).passed(), "{:#?}", check(&all));
     all[0].poses[0].z[3].z = f64::NAN;
-    assert_eq!(run::check(&all).failures.len(), 1);
+    assert_eq!(check(&all).failures.len(), 1);
     // A reference that is 5% off.
     let light = Sky::default().environment();
     let lit = Lit {
@@ -340,7 +337,7 @@ fn every_estimator_is_timed() {
     let map = small_map();
     let subjects: Vec<RaySubject> = RaySubject::all().take(2).collect();
     let mut calls = 0;
-    let times = times::measure(&subjects, &[&map as &dyn Light], 1, 3, |_| calls += 1);
+    let times = measure_times(&subjects, &[&map as &dyn Light], 1, 3, |_| calls += 1);
     assert_eq!((times.len(), calls), (2, 2));
     for time in &times {
         assert!(

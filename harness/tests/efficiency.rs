@@ -1,12 +1,11 @@
-//! Tests against quadrature and the recorded table, of determinism, and of hair and lights that scatter nothing.
+//! Efficiencies against quadrature and the recorded table, of determinism, and of hair and lights that scatter nothing.
 
-use super::case::Case;
-use super::cells::recorded_v;
-use super::measure::{CellMoments, bias_z, is_tested, moments};
-use super::reference::{by_quadrature, exact_variance};
-use super::result::Technique;
-use super::*;
-use crate::lights::Lights;
+use hairis::HairParams;
+use hairis::params::HairDesc;
+use hairis_harness::efficiency::*;
+use hairis_harness::lights::Lights;
+use hairis_harness::sampler::Sampler;
+use hairis_harness::subject::ModelKind;
 use hairis_instruments::light::{Constant, Environment, Light, Sky, Sun};
 use hairis_instruments::sequence::{Independent, SequenceKind, XiSource};
 use hairis_instruments::stats::{Estimate, Moments};
@@ -283,17 +282,12 @@ fn a_wrong_mean_fails_the_check() {
         .find(|r| r.sampler == Sampler::Published && r.light == "constant")
         .expect("a row");
     row.z = 0.05 * row.mean.value / row.mean.standard_error;
-    assert_eq!(
-        run::check(&result).failures.len(),
-        1,
-        "{:?}",
-        run::check(&result)
-    );
+    assert_eq!(check(&result).failures.len(), 1, "{:?}", check(&result));
     result.rows[1].z = f64::NAN;
-    let check = run::check(&result);
+    let found = check(&result);
     assert!(
-        check.failures.len() == 2 && check.largest_z.is_infinite(),
-        "{check:?}"
+        found.failures.len() == 2 && found.largest_z.is_infinite(),
+        "{found:?}"
     );
 }
 
@@ -324,7 +318,7 @@ fn maps_of_few_texels_raise_no_alarm() {
     let one = Environment::from_pixels("one", 1, 1, vec![[1.0; 3]]).expect("valid");
     let case = Case::new(ModelKind::Gaussian, &HairParams::bright(), 45.0);
     let [got, exact] = [
-        reference::of_environment(&case, &one, 128, 16, 1),
+        of_environment(&case, &one, 128, 16, 1),
         by_quadrature(&case, &Constant),
     ];
     assert_eq!(got.method, ReferenceMethod::StratifiedRun);
@@ -369,7 +363,7 @@ fn black_hair_and_black_maps_are_no_failures() {
     assert!(result.check.passed(), "{:#?}", result.check);
     serde_json::to_string(&result).expect("serialises");
     let case = Case::new(ModelKind::Gaussian, &HairParams::bright(), 45.0);
-    let reference = reference::of_environment(&case, &map, 8, 1, 0);
+    let reference = of_environment(&case, &map, 8, 1, 0);
     for technique in Technique::all() {
         let tally = independent(&case, technique, &map, [61, 0], 1_000);
         assert_eq!(

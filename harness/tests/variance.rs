@@ -1,0 +1,4 @@
+//! Engine of the variances.
+
+mod perfect;
+mod tally;
