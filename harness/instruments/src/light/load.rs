@@ -3,6 +3,7 @@
 mod openexr;
 mod primaries;
 mod radiance;
+mod rgbe;
 
 pub use primaries::Primaries;
 
@@ -17,6 +18,17 @@ use std::path::{Path, PathBuf};
 
 /// Largest number of texels of a map, 8192 x 4096; the tables of a map beyond would take a gigabyte.
 const MAX_TEXELS: usize = 1 << 25;
+
+/// First bytes of pictures without high dynamic range, which may be taken for maps, with the names of their formats.
+const PICTURES: [(&[u8], &str); 7] = [
+    (b"\x89PNG\r\n\x1a\n", "Png"),
+    (b"\xff\xd8\xff", "Jpeg"),
+    (b"II*\0", "Tiff"),
+    (b"MM\0*", "Tiff"),
+    (b"DDS ", "Dds"),
+    (b"BM", "Bmp"),
+    (b"GIF8", "Gif"),
+];
 
 /// Error of an environment map that cannot be used: the file and the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -138,10 +150,8 @@ fn read_map(path: &Path, layer: Option<&str>) -> Result<Map, String> {
         return openexr::read(file, layer);
     }
     if !start.starts_with(b"#?") {
-        let kind = match image::guess_format(start) {
-            Ok(format) => format!("{format:?} is not"),
-            Err(_) => "not a".to_owned(),
-        };
+        let known = PICTURES.iter().find(|(mark, _)| start.starts_with(mark));
+        let kind = known.map_or("not a".to_owned(), |(_, name)| format!("{name} is not"));
         return Err(format!("unsupported: {kind} Radiance HDR or OpenEXR file"));
     }
     if let Some(layer) = layer {

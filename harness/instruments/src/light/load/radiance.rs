@@ -1,10 +1,8 @@
-//! Reader of Radiance HDR files. The whole header is read here, and the crate `image` decodes the pixels.
+//! Reader of Radiance HDR files: the header, and the order of the pixels.
 
 use super::primaries::{Primaries, xyz_to_rec_709};
-use super::{Map, checked, damaged, excerpt, line};
+use super::{Map, checked, damaged, excerpt, line, rgbe};
 use crate::light::rounded;
-use image::codecs::hdr::HdrDecoder;
-use image::{DynamicImage, ImageError};
 use std::io::{BufRead, ErrorKind, Read as _};
 
 /// Length of the longest header that is read, in bytes.
@@ -19,20 +17,13 @@ pub(super) fn read(mut file: impl BufRead) -> Result<Map, String> {
         pixels: Vec::new(),
         remarks: Vec::new(),
     };
-    // The crate accepts one signature, one order of pixels and one format, but all formats have the same bytes.
-    let plain = format!("#?RADIANCE\n\n-Y {lines} +X {length}\n");
-    let scanned = HdrDecoder::new(plain.as_bytes().chain(file))
-        .and_then(DynamicImage::from_decoder)
-        .map_err(|e| match e {
-            ImageError::IoError(e) if e.kind() != ErrorKind::UnexpectedEof => {
-                format!("cannot read: {}", line(&e))
-            }
-            e => damaged(e),
-        })?;
+    let scanned = rgbe::read(&mut file, lines, length).map_err(|e| match e.kind() {
+        ErrorKind::UnexpectedEof | ErrorKind::InvalidData => damaged(e),
+        _ => format!("cannot read: {}", line(&e)),
+    })?;
     map.pixels = vec![[0.0; 3]; lines * length];
-    let scanned = scanned.into_rgb32f();
-    for (k, pixel) in scanned.pixels().enumerate() {
-        map.pixels[header.place(k)] = pixel.0;
+    for (k, pixel) in scanned.into_iter().enumerate() {
+        map.pixels[header.place(k)] = pixel;
     }
     if header.divisor != [1.0; 3] {
         for pixel in &mut map.pixels {
