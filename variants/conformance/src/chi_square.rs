@@ -4,7 +4,7 @@ use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Failure, Outcome};
 use crate::integral::Integral;
 use crate::mesh::{Mesh, Samples};
-use crate::probe::{Draws, fill, some_hits};
+use crate::probe::{Draws, fill, numbered_hits};
 use crate::statistics::chi_square_tail;
 use hairis::LobeMask;
 
@@ -24,20 +24,22 @@ const SHARE: f64 = 1.0 / 256.0;
 pub fn samples_follow_density(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "samples follow the density";
     let (claims, materials) = (subject.claims(), subject.set(Which::Everyday));
-    let runs = (materials.len() * some_hits(0).count()) as f64;
+    let runs = (materials.len() * numbered_hits(0).count()) as f64;
     let least = 1.0 - (1.0 - SIGNIFICANCE).powf(1.0 / runs);
-    let mut draws = Draws(0x5eed);
     let (mut numbers, mut samples) = (Default::default(), Samples::default());
     let mut worst = 1.0_f64;
     for material in materials.iter() {
         let name = material.name();
-        for hit in some_hits(material.index()) {
+        for (run, hit) in numbered_hits(material.index()) {
             let bsdf = material.prepare(hit);
             let mesh = Mesh::new(subject, material, &hit, &*bsdf, LobeMask::ALL, &mut samples);
             let [rows, width] = mesh.size();
             let expected = Integral::density(&*bsdf, &mesh).mass;
             let mut observed = vec![0_u32; rows * width];
             let mut live = 0_u32;
+            // The numbers of a run are the same in every size.
+            let mut draws = Draws(0x5eed);
+            draws.skip(3 * run as u64 * u64::from(claims.samples));
             fill(&mut numbers, claims.samples, |_| draws.xi3());
             for direction in samples.draw(&*bsdf, &numbers).live() {
                 let [i, j] = mesh.find(direction);

@@ -42,10 +42,18 @@ pub(crate) fn run_seed() -> u64 {
     })
 }
 
+/// Difference of the states of two draws: 2^64 over the golden ratio.
+const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+
 impl Draws {
     /// Draws 64 random bits, which depend on `HAIRIS_SEED`.
     pub fn bits(&mut self) -> u64 {
         self.mixed(run_seed())
+    }
+
+    /// Skips `count` draws.
+    pub(crate) fn skip(&mut self, count: u64) {
+        self.0 = self.0.wrapping_add(STEP.wrapping_mul(count));
     }
 
     /// Draws 64 random bits that are the same in every run.
@@ -54,7 +62,7 @@ impl Draws {
     }
 
     fn mixed(&mut self, run_seed: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        self.0 = self.0.wrapping_add(STEP);
         let mut z = self.0 ^ run_seed;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -158,10 +166,13 @@ pub(crate) fn rounded(v: Direction, by: f64) -> [Direction; 8] {
     ]
 }
 
+/// Number of hits for properties that take an integral.
+const HITS: usize = 7;
+
 /// Returns the hits for properties that take an integral: normal, tilted both ways, and grazing at more than 80 degrees.
-pub(crate) fn hits() -> [Hit; 7] {
-    const THETA_O: [f64; 7] = [0.0, 25.0, -50.0, 70.0, -82.0, 87.0, 89.9];
-    const H: [f32; 7] = [0.0, 0.35, -0.8, 0.99, -0.6, 0.999, -0.1];
+pub(crate) fn hits() -> [Hit; HITS] {
+    const THETA_O: [f64; HITS] = [0.0, 25.0, -50.0, 70.0, -82.0, 87.0, 89.9];
+    const H: [f32; HITS] = [0.0, 0.35, -0.8, 0.99, -0.6, 0.999, -0.1];
     core::array::from_fn(|i| Hit {
         wo: direction(THETA_O[i].to_radians(), 0.9 * i as f64 - 2.5).into(),
         h: H[i],
@@ -169,14 +180,20 @@ pub(crate) fn hits() -> [Hit; 7] {
 }
 
 /// Returns the hits at which a property integrates the density of a material: all of [`hits`] in CI's size, and two of them in the usual
-/// size, other ones for the next material.
-pub(crate) fn some_hits(material: usize) -> impl Iterator<Item = Hit> {
+/// size, other ones for the next material. Each has its number among all hits of all materials.
+pub(crate) fn numbered_hits(material: usize) -> impl Iterator<Item = (usize, Hit)> {
     let all = hits();
     let count = cases(all.len()).min(all.len());
     let chosen = (0..count).map(|n| (material + n * all.len() / count) % all.len());
     let chosen: Vec<usize> = chosen.collect();
     let numbered = all.into_iter().enumerate();
-    numbered.filter_map(move |(n, hit)| chosen.contains(&n).then_some(hit))
+    let number = move |n: usize| material * HITS + n;
+    numbered.filter_map(move |(n, hit)| chosen.contains(&n).then_some((number(n), hit)))
+}
+
+/// Returns the hits of [`numbered_hits`].
+pub(crate) fn some_hits(material: usize) -> impl Iterator<Item = Hit> {
+    numbered_hits(material).map(|(_, hit)| hit)
 }
 
 /// Returns awkward hits, followed by `count` random ones.
