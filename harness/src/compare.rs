@@ -15,7 +15,7 @@ use crate::materials::{self, MaterialPose, MaterialRow, NamedMaterial};
 use crate::rays::{self as ray_figures, RaysConfig, RaysResult};
 use crate::speed::{self, SpeedConfig, SpeedReport};
 use crate::subject::ModelKind;
-use crate::times::Times;
+use crate::times::{Rounds, Times};
 use crate::variance::SampleBudget;
 use hairis::ParamError;
 use hairis_instruments::light::Environment;
@@ -74,7 +74,7 @@ pub fn run(
     let speed = speed::run(&SpeedConfig::new(seed, quick), |done| {
         progress("speed", done)
     })?;
-    let costs = sample_costs(&Times::measure(seed, quick, None));
+    let costs = sample_costs(&Times::measure(seed, Rounds::of(quick), None));
 
     progress("agreement", 0.0);
     let agreement = agreement::run(seed, if quick { 2_000 } else { 40_000 })?;

@@ -43,6 +43,35 @@ pub enum Timed {
     LookUp(String),
 }
 
+/// Numbers of rounds in which times are measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rounds {
+    /// Rounds of samples and look-ups.
+    pub of_samples: usize,
+    /// Rounds of rays.
+    pub of_rays: usize,
+}
+
+impl Rounds {
+    /// Rounds of the whole run.
+    pub const FULL: Self = Self {
+        of_samples: 75,
+        of_rays: 75,
+    };
+
+    /// Rounds of the short run.
+    pub const QUICK: Self = Self {
+        of_samples: 15,
+        of_rays: 9,
+    };
+
+    /// Returns the rounds of the short run, or of the whole one.
+    #[must_use]
+    pub const fn of(quick: bool) -> Self {
+        if quick { Self::QUICK } else { Self::FULL }
+    }
+}
+
 /// Times of a sample, of a look-up of the light and, on request, of a ray without its tracing, measured on this machine.
 #[derive(Clone, Debug, Default)]
 pub struct Times {
@@ -53,33 +82,31 @@ pub struct Times {
 }
 
 impl Times {
-    /// Measures the times of samples and look-ups, with nothing else at work, in about three seconds, or less than one if `quick`. Without
+    /// Measures the times of samples and look-ups, with nothing else at work, in about three seconds, or less than one if quick. Without
     /// an environment, the time of its look-up stays unknown.
     #[must_use]
-    pub fn measure(seed: u64, quick: bool, environment: Option<&Environment>) -> Self {
-        let rounds = if quick { 15 } else { 75 };
-        let of_samples = measure(seed, rounds, &Lights::from(environment).all());
+    pub fn measure(seed: u64, rounds: Rounds, environment: Option<&Environment>) -> Self {
+        let of_samples = measure(seed, rounds.of_samples, &Lights::from(environment).all());
         Self {
             of_samples,
             of_rays: Vec::new(),
         }
     }
 
-    /// Measures the times of rays as well, in about five seconds, or one if `quick`.
+    /// Measures the times of rays as well, in about five seconds, or one if quick.
     #[must_use]
-    pub fn with_rays(self, seed: u64, quick: bool, environment: Option<&Environment>) -> Self {
+    pub fn with_rays(self, seed: u64, rounds: Rounds, environment: Option<&Environment>) -> Self {
         let is_measured = |of: &RaySubject| {
             ModelKind::ALL
                 .iter()
                 .any(|model| model.name() == of.model())
         };
         let subjects: Vec<RaySubject> = RaySubject::all().filter(is_measured).collect();
-        let rounds = if quick { 9 } else { 75 };
         let of_rays = measure_times(
             &subjects,
             &Lights::from(environment).all(),
             seed,
-            rounds,
+            rounds.of_rays,
             |_| (),
         );
         Self { of_rays, ..self }

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod exact;
+mod maps;
 mod other;
 mod refusals;
 mod streams;

@@ -54,6 +54,9 @@ pub struct Study {
     /// A few cells and samples, in less than two minutes
     #[arg(long)]
     pub quick: bool,
+    /// Fewer still, for tests that ask for no figure
+    #[arg(long, hide = true, conflicts_with = "quick")]
+    pub tiny: bool,
     /// Seed of everything that is drawn; rows depend on it alone
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
@@ -88,6 +91,9 @@ pub struct Claims {
     /// A few cells and samples, in less than 30 seconds
     #[arg(long)]
     pub quick: bool,
+    /// Fewer still, for tests that ask for no figure
+    #[arg(long, hide = true, conflicts_with = "quick")]
+    pub tiny: bool,
     /// Seed of everything that is drawn; results but for the timings depend on it alone
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,

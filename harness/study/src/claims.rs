@@ -35,7 +35,7 @@ pub use claim::{Claim, Figure, Origin, Role, Side, Threshold, Verdict};
 pub use tables::tables;
 
 use crate::study::part::Header;
-use crate::study::{Cell, Grid, Plan};
+use crate::study::{Cell, Grid, Plan, Size};
 use hair::{Hair, HairFigures};
 use hairis::ParamError;
 use hairis_harness::journal::Journal;
@@ -79,18 +79,18 @@ type FoundCells = [(Cell, ModelKind, HairFigures)];
 
 /// Returns the header that holds everything the figures depend on. Runs with equal headers have equal figures, except for times.
 #[must_use]
-pub fn header(seed: u64, quick: bool) -> Header {
+pub fn header(seed: u64, size: Size) -> Header {
     let sky = Sky::default().environment();
     let plan = Plan {
         seed,
-        quick,
+        size,
         lights: (&sky).into(),
         materials: &[],
     };
     plan.header(Shard::WHOLE)
 }
 
-/// Computes the claims with this seed, on all 3024 cells or, if `quick`, on the 48 cells and with the samples of the short study. Workers
+/// Computes the claims with this seed, on the cells and with the samples of a study of this size. Workers
 /// call `progress` with the share that is done, from 0 to 1, in no order. Figures that `journal` holds are taken from it, and new ones are
 /// added.
 ///
@@ -99,14 +99,14 @@ pub fn header(seed: u64, quick: bool) -> Header {
 /// Returns an error if `journal` cannot be read or written. The hair of the grid is within the accepted ranges.
 pub fn run(
     seed: u64,
-    quick: bool,
+    size: Size,
     journal: &Journal,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Claims, Error> {
     let sky = Sky::default().environment();
     let plan = Plan {
         seed,
-        quick,
+        size,
         lights: (&sky).into(),
         materials: &[],
     };
@@ -136,7 +136,7 @@ pub fn run(
     let lights = performance::LIGHTS.map(|light| light.words);
     let settings = Settings {
         seed,
-        quick,
+        quick: size.is_quick(),
         cells: grid.len(),
         samples: plan.budget().samples,
         lights,

@@ -47,7 +47,7 @@ pub mod summary;
 
 pub mod view;
 
-pub use grid::{Cell, Grid};
+pub use grid::{Cell, Grid, Size};
 
 pub use view::gain;
 
@@ -70,8 +70,8 @@ use rayon::prelude::*;
 pub struct Plan<'a> {
     /// Seed of every stream.
     pub seed: u64,
-    /// Whether this is the short run.
-    pub quick: bool,
+    /// Size of the run.
+    pub size: Size,
     /// Lights that every cell is measured under.
     pub lights: Lights<'a>,
     /// Materials beside the hair of the grid, seen from its inclinations.
@@ -79,16 +79,16 @@ pub struct Plan<'a> {
 }
 
 impl Plan<'_> {
-    /// Returns the grid of the run, short or whole.
+    /// Returns the grid of the run.
     #[must_use]
     pub const fn grid(&self) -> Grid {
-        Grid::of(self.quick)
+        self.size.grid()
     }
 
     /// Returns the numbers of samples per cell.
     #[must_use]
     pub const fn budget(&self) -> SampleBudget {
-        SampleBudget::of(self.quick)
+        self.size.budget()
     }
 
     /// Returns the header of the part file of `shard`, with everything that the rows depend on.
@@ -110,7 +110,7 @@ impl Plan<'_> {
                 Level::detect().name(),
                 machine.target_features.join("+")
             ),
-            quick: self.quick,
+            quick: self.size.is_quick(),
             seed: self.seed,
             samples: budget.samples,
             light_samples: budget.light_samples,

@@ -12,11 +12,12 @@ mod uniform;
 
 use hairis_harness::journal::Journal;
 use hairis_study::claims::{Claim, Claims, Figure, Origin, Role, Verdict, run, tables};
+use hairis_study::study::Size;
 use std::sync::OnceLock;
 
 fn claims() -> &'static Claims {
     static CLAIMS: OnceLock<Claims> = OnceLock::new();
-    CLAIMS.get_or_init(|| run(1, true, &Journal::default(), &|_| ()).unwrap())
+    CLAIMS.get_or_init(|| run(1, Size::Quick, &Journal::default(), &|_| ()).unwrap())
 }
 
 fn claim(id: &str) -> &'static Claim {

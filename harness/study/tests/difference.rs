@@ -18,7 +18,8 @@ use hairis_study::difference::*;
 use hairis_study::study::Grid;
 use std::sync::LazyLock;
 
-static QUICK: LazyLock<Difference> = LazyLock::new(|| {
+/// Differences over the short grid, computed once for all tests.
+pub(crate) static QUICK: LazyLock<Difference> = LazyLock::new(|| {
     Difference::over(Grid::QUICK, &Journal::default(), &|_, _| ()).expect("accepted")
 });
 

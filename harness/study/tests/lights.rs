@@ -9,8 +9,8 @@ use hairis_instruments::light::{Light, LightSample, Seen8, Sky, Sun};
 use hairis_instruments::quadrature::{Integral, SphereIntegrator};
 use hairis_instruments::shard::Shard;
 use hairis_study::claims;
-use hairis_study::study::Plan;
 use hairis_study::study::output::Study;
+use hairis_study::study::{Plan, Size};
 
 /// Sixth light: a sun elsewhere.
 #[derive(Debug)]
@@ -88,7 +88,7 @@ fn a_sixth_light_moves_no_verdict_of_the_claims() {
     let [five, six] = without_and_with(|lights: Lights<'_>| {
         let plan = Plan {
             seed: 5,
-            quick: true,
+            size: Size::Tiny,
             lights,
             materials: &[],
         };
@@ -104,7 +104,7 @@ fn a_sixth_light_moves_no_finding_of_a_study() {
     let study = |lights: Lights<'_>| {
         let plan = Plan {
             seed: 5,
-            quick: true,
+            size: Size::Quick,
             lights,
             materials: &[],
         };

@@ -186,7 +186,7 @@ pub(super) fn by_light(
 
 /// Judges the claim in equal time.
 fn in_time(plan: &Plan<'_>, means: &[Estimate]) -> Claim {
-    let times = Times::measure(plan.seed, plan.quick, None);
+    let times = Times::measure(plan.seed, plan.size.rounds(), None);
     let [gaussian, cauchy] =
         ModelKind::ALL.map(|model| times.ns(model, Sampler::Published, PER_POINT));
     let faster = gaussian.ratio(&cauchy);

@@ -3,7 +3,7 @@
 use super::bounded::{Bounded, Spread, largest};
 use super::claim::{Claim, Figure, Origin, Side, Statement};
 use super::{FoundCells, hair_of};
-use crate::study::{Cell, Grid, Plan, variances};
+use crate::study::{Cell, Grid, Plan, Size, variances};
 use hairis::ParamError;
 use hairis_harness::journal::Journal;
 use hairis_harness::sampler::Sampler;
@@ -43,7 +43,11 @@ pub fn example() -> Cell {
 ///
 /// Returns an error if the hair is rejected, or if a figure cannot be kept.
 pub fn measured(plan: &Plan<'_>, cell: &Cell, journal: &Journal) -> Result<[Estimate; 2], Error> {
-    let budget = if plan.quick { 1 << 18 } else { 1 << 22 };
+    let budget = match plan.size {
+        Size::Tiny => 1 << 14,
+        Size::Quick => 1 << 18,
+        Size::Full => 1 << 22,
+    };
     let budget = SampleBudget {
         samples: budget,
         light_samples: 8,

@@ -2,6 +2,7 @@
 
 use crate::args::Claims;
 use crate::claims;
+use crate::study::Size;
 use hairis_harness::cmd::print_tables;
 use hairis_harness::journal::Journal;
 use hairis_instruments::error::Error;
@@ -23,10 +24,11 @@ pub fn run(flags: &Claims) -> Result<(), Error> {
     writable(&path)?;
 
     let bar = share_bar("claims {wide_bar} {percent:>3}% {elapsed} (left {eta})");
-    let header = claims::header(flags.seed, flags.quick);
+    let size = Size::of_flags(flags.quick, flags.tiny);
+    let header = claims::header(flags.seed, size);
     let journal = Journal::open(&flags.out, "claims", &header, Interrupt::watch())?;
     let show = |done| show_share(&bar, done);
-    let claims = claims::run(flags.seed, flags.quick, &journal, &show)?;
+    let claims = claims::run(flags.seed, size, &journal, &show)?;
     bar.finish_and_clear();
 
     write_json(&path, &claims)?;

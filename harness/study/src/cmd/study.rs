@@ -4,7 +4,7 @@ use crate::args::Study as Flags;
 use crate::difference::Difference;
 use crate::study::output::Study;
 use crate::study::part::{Part, read};
-use crate::study::{self, Plan};
+use crate::study::{self, Plan, Size};
 use hairis_harness::cmd::{environment, print_tables, report_failures};
 use hairis_harness::journal::Journal;
 use hairis_harness::materials;
@@ -35,7 +35,7 @@ pub fn run(flags: &Flags) -> Result<(), Error> {
     let materials = materials::of_flags(&flags.model, &flags.material)?;
     let plan = Plan {
         seed: flags.seed,
-        quick: flags.quick,
+        size: Size::of_flags(flags.quick, flags.tiny),
         materials: &materials,
         lights: (&environment).into(),
     };

@@ -42,7 +42,7 @@ impl Study {
         let Some((first, Read { header, .. })) = parts.first() else {
             return Err(Error::Missing("no parts".to_owned()));
         };
-        let grid = Grid::of(header.quick);
+        let grid = header.size().grid();
         let known = header.format == FORMAT
             && header
                 .models
@@ -153,7 +153,7 @@ impl Study {
             bias: Some(-1.0),
         };
         let row: Vec<Measured> = (0..header.rows()).map(row).collect();
-        let cells = Grid::of(header.quick).cells().map(|cell| {
+        let cells = header.size().grid().cells().map(|cell| {
             let mut rows = row.clone();
             set_bounds(&cell, &mut rows, lights);
             rows
@@ -191,14 +191,14 @@ impl Study {
 
     /// Returns the grid whose cells the study has.
     #[must_use]
-    pub const fn grid(&self) -> Grid {
-        Grid::of(self.header.quick)
+    pub fn grid(&self) -> Grid {
+        self.header.size().grid()
     }
 
     /// Measures the times of this machine, with nothing else at work. Without an environment, the time of its look-up stays unknown.
     pub fn time(&mut self, environment: Option<&Environment>) {
-        let Header { seed, quick, .. } = self.header;
-        self.times = Times::measure(seed, quick, environment).with_rays(seed, quick, environment);
+        let (seed, rounds) = (self.header.seed, self.header.size().rounds());
+        self.times = Times::measure(seed, rounds, environment).with_rays(seed, rounds, environment);
     }
 
     /// Returns true if there are materials beside the hair of the grid.

@@ -3,6 +3,8 @@
 use hairis::params::HairDesc;
 use hairis::{HairParams, ParamError};
 use hairis_harness::efficiency::with_beta;
+use hairis_harness::times::Rounds;
+use hairis_harness::variance::SampleBudget;
 use hairis_instruments::columns::Columns;
 
 /// Values of each axis. Every combination of values is a cell, and the last axis runs fastest.
@@ -44,6 +46,85 @@ pub struct Cell {
 /// Values of an axis, and the function that returns the value of a cell.
 pub(crate) type GridAxis = (&'static [f32], fn(&Cell) -> f32);
 
+/// Size of a run, which its flags choose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Size {
+    /// Run of tests that ask for no figure.
+    Tiny,
+    /// Short run.
+    Quick,
+    /// Whole run.
+    Full,
+}
+
+impl Size {
+    /// Every size.
+    pub const ALL: [Self; 3] = [Self::Tiny, Self::Quick, Self::Full];
+
+    /// Returns the size that the flags `--quick` and `--tiny` choose.
+    #[must_use]
+    pub const fn of_flags(quick: bool, tiny: bool) -> Self {
+        match (tiny, quick) {
+            (true, _) => Self::Tiny,
+            (false, true) => Self::Quick,
+            (false, false) => Self::Full,
+        }
+    }
+
+    /// Returns true if this is not the whole run.
+    #[must_use]
+    pub const fn is_quick(self) -> bool {
+        !matches!(self, Self::Full)
+    }
+
+    /// Returns the grid of the run.
+    #[must_use]
+    pub const fn grid(self) -> Grid {
+        match self {
+            Self::Tiny => Grid::TINY,
+            Self::Quick => Grid::QUICK,
+            Self::Full => Grid::FULL,
+        }
+    }
+
+    /// Returns the numbers of samples per cell.
+    #[must_use]
+    pub const fn budget(self) -> SampleBudget {
+        match self {
+            Self::Tiny => SampleBudget {
+                samples: 1 << 14,
+                light_samples: 1 << 11,
+                pools: 64,
+            },
+            Self::Quick => SampleBudget::of(true),
+            Self::Full => SampleBudget::of(false),
+        }
+    }
+
+    /// Returns the numbers of rounds in which times are measured.
+    #[must_use]
+    pub const fn rounds(self) -> Rounds {
+        match self {
+            Self::Tiny => Rounds {
+                of_samples: 3,
+                of_rays: 3,
+            },
+            Self::Quick => Rounds::QUICK,
+            Self::Full => Rounds::FULL,
+        }
+    }
+
+    /// Returns the flag that chooses the size, after a space.
+    #[must_use]
+    pub const fn flag(self) -> &'static str {
+        match self {
+            Self::Tiny => " --tiny",
+            Self::Quick => " --quick",
+            Self::Full => "",
+        }
+    }
+}
+
 impl Grid {
     /// Grid of the whole study, with 3024 cells.
     pub const FULL: Self = Self {
@@ -65,11 +146,12 @@ impl Grid {
         theta_o_deg: &[0.0, 45.0, 75.0, 85.0],
     };
 
-    /// Returns the grid of the short run, or of the whole one.
-    #[must_use]
-    pub const fn of(quick: bool) -> Self {
-        if quick { Self::QUICK } else { Self::FULL }
-    }
+    /// Grid of tests that ask for no figure: 12 of the cells of the short run, of three kinds of hair.
+    pub const TINY: Self = Self {
+        gamma_tt_deg: &[10.0],
+        intensity_g: &[0.5],
+        ..Self::QUICK
+    };
 
     /// Returns the cells of the grid, in order.
     pub fn cells(self) -> impl Iterator<Item = Cell> {

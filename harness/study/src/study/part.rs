@@ -5,7 +5,7 @@
 
 pub use hairis_harness::sealed::line;
 
-use super::grid::Grid;
+use super::grid::Size;
 use hairis_harness::materials::MaterialKey;
 use hairis_harness::sealed::unseal;
 use hairis_harness::variance::{Figures, Measured};
@@ -73,10 +73,18 @@ impl Header {
         self.models.len() * (self.samplers.len() + 1) * self.lights.len()
     }
 
+    /// Returns the size of the run, which the number of its cells tells.
+    #[must_use]
+    pub fn size(&self) -> Size {
+        let mut all = Size::ALL.into_iter();
+        let size = all.find(|size| size.grid().len() == self.cells);
+        size.unwrap_or(Size::of_flags(self.quick, false))
+    }
+
     /// Returns the number of cells of the grid and of the materials together.
     #[must_use]
     pub fn work(&self) -> usize {
-        let poses = Grid::of(self.quick).theta_o_deg.len();
+        let poses = self.size().grid().theta_o_deg.len();
         self.cells.saturating_add(poses * self.materials.len())
     }
 
@@ -85,7 +93,7 @@ impl Header {
         let Some(place) = cell.checked_sub(self.cells) else {
             return self.rows();
         };
-        let poses = Grid::of(self.quick).theta_o_deg.len();
+        let poses = self.size().grid().theta_o_deg.len();
         let material = self.materials.get(place / poses);
         material.map_or(0, |key| (key.samplers.len() + 1) * self.lights.len())
     }

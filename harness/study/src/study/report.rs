@@ -24,7 +24,7 @@ impl Study {
     #[must_use]
     pub fn report(&self, difference: &Difference, claims: Option<&Value>) -> Report {
         let header = &self.header;
-        let quick = if header.quick { " --quick" } else { "" };
+        let quick = header.size().flag();
         let subtitle = format!(
             "hairis study{quick}, seed {}: {} cells of hair and viewing angle, {} samplers of two models, {} lights{}",
             header.seed,
@@ -130,10 +130,7 @@ impl Study {
         let others = &others[..others.len() - usize::from(has_claims)];
         let section = Section::new("Method and machine").paragraph(cells);
         others.iter().fold(section, Section::paragraph).facts(&[
-            [
-                "command",
-                &format!("hairis study{}", if header.quick { " --quick" } else { "" }),
-            ],
+            ["command", &format!("hairis study{}", header.size().flag())],
             ["seed", &header.seed.to_string()],
             [
                 "samples",

@@ -6,14 +6,14 @@ use hairis_instruments::light::Sky;
 use hairis_study::claims::bounded::Bounded;
 use hairis_study::claims::hair_of;
 use hairis_study::claims::uniform::*;
-use hairis_study::study::Plan;
+use hairis_study::study::{Plan, Size};
 
 #[test]
 fn the_example_is_that_of_the_record() {
     let sky = Sky::default().environment();
     let plan = Plan {
         seed: 3,
-        quick: true,
+        size: Size::Quick,
         lights: (&sky).into(),
         materials: &[],
     };

@@ -11,9 +11,9 @@ use std::thread;
 use std::time::Instant;
 use tempfile::TempDir;
 
-fn quick(dir: &Path, threads: &str, seed: &str) -> Command {
+fn tiny(dir: &Path, threads: &str, seed: &str) -> Command {
     let out = dir.to_str().unwrap();
-    let mut command = command(&["claims", "--quick", "--seed", seed, "--out", out]);
+    let mut command = command(&["claims", "--tiny", "--seed", seed, "--out", out]);
     command
         .env("RAYON_NUM_THREADS", threads)
         .stdin(Stdio::null());
@@ -21,7 +21,7 @@ fn quick(dir: &Path, threads: &str, seed: &str) -> Command {
 }
 
 fn claims(dir: &Path, threads: &str, seed: &str) -> Run {
-    quick(dir, threads, seed).output().unwrap().into()
+    tiny(dir, threads, seed).output().unwrap().into()
 }
 
 /// Returns `claims.json` of a run, without the claim that depends on times.
@@ -68,7 +68,7 @@ fn a_killed_run_goes_on() {
         text.unwrap_or_default().lines().count()
     };
     for (least, signal, code) in [(3, "TERM", Some(143)), (100, "KILL", None)] {
-        let child = quick(dir.path(), "2", "1").spawn().unwrap();
+        let child = tiny(dir.path(), "2", "1").spawn().unwrap();
         let start = Instant::now();
         while lines() < least && start.elapsed() < Duration::from_secs(120) {
             thread::sleep(Duration::from_millis(1));
@@ -133,7 +133,7 @@ fn a_full_disk_leaves_the_file_as_it_was() {
     let path = dir.path().join("claims.json");
     fs::write(&path, "before").unwrap();
     // No file may grow beyond a kilobyte or two. The signal for that is ignored, as in any program that checks its writes.
-    let script = "trap '' XFSZ; ulimit -f 2; exec \"$0\" claims --quick --out \"$1\"";
+    let script = "trap '' XFSZ; ulimit -f 2; exec \"$0\" claims --tiny --out \"$1\"";
     let output = Command::new("sh")
         .args([
             "-c",

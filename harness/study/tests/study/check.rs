@@ -3,15 +3,15 @@
 use hairis_harness::variance::Measured;
 use hairis_instruments::light::Sky;
 use hairis_instruments::shard::Shard;
-use hairis_study::study::Plan;
 use hairis_study::study::output::Study;
+use hairis_study::study::{Plan, Size};
 
 #[test]
 fn weights_above_their_bound_and_means_apart_are_found() {
     let sky = Sky::default().environment();
     let plan = Plan {
         seed: 1,
-        quick: true,
+        size: Size::Quick,
         lights: (&sky).into(),
         materials: &[],
     };

@@ -3,15 +3,15 @@
 use hairis_instruments::error::Error;
 use hairis_instruments::light::Sky;
 use hairis_instruments::shard::Shard;
-use hairis_study::study::Plan;
 use hairis_study::study::part::*;
+use hairis_study::study::{Plan, Size};
 use std::fs;
 
 fn header(seed: u64) -> Header {
     let sky = Sky::default().environment();
     Plan {
         seed,
-        quick: true,
+        size: Size::Quick,
         lights: (&sky).into(),
         materials: &[],
     }

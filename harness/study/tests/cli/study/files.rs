@@ -1,18 +1,34 @@
 //! Files of a finished study, with their rows, columns and figures.
 
-use super::{CELLS, reference};
+use super::{shared_folder, sized};
 #[cfg(feature = "parquet")]
 use parquet::file::reader::{FileReader, SerializedFileReader};
 #[cfg(feature = "parquet")]
 use parquet::record::Field;
 use serde_json::Value;
 use std::collections::HashMap;
-use std::fs;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
+/// Number of cells of the short run.
+const CELLS: usize = 48;
 /// Number of samplers that can be run.
 const SAMPLERS: usize = hairis_harness::sampler::Sampler::ALL.len();
 /// Number of rows of a cell: two models, each sampler and perfect sampling, five lights.
 const ROWS_OF_A_CELL: usize = 2 * (SAMPLERS + 1) * 5;
+
+/// Returns the folder of a finished short run, made once.
+fn reference() -> &'static Path {
+    static DIR: OnceLock<(File, PathBuf)> = OnceLock::new();
+    let (_, dir) = DIR.get_or_init(|| {
+        let (lock, dir) = shared_folder("study-quick");
+        let run = sized("--quick", &dir, "2", &[]);
+        assert_eq!(run.code, Some(0), "{:?}", run.err);
+        (lock, dir)
+    });
+    dir
+}
 
 fn csv(name: &str) -> Vec<Vec<String>> {
     let text = fs::read_to_string(reference().join(name)).unwrap();
@@ -235,7 +251,7 @@ fn efficiencies_follow_from_variances_and_times() {
 fn csv_and_parquet_have_the_same_content() {
     for name in ["study", "efficiency", "difference"] {
         let rows = csv(&format!("{name}.csv"));
-        let file = fs::File::open(reference().join(format!("{name}.parquet"))).unwrap();
+        let file = File::open(reference().join(format!("{name}.parquet"))).unwrap();
         let reader = SerializedFileReader::new(file).unwrap();
         let schema = reader.metadata().file_metadata().schema();
         let names: Vec<&str> = schema

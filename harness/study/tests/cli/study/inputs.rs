@@ -35,17 +35,15 @@ fn maps_without_light_are_refused() {
         ),
     ] {
         let path = map(dir.path(), [4, 2], pixel);
-        for name in ["compare", "study"] {
-            let args = [
-                name,
-                "--quick",
-                "--out",
-                out.to_str().unwrap(),
-                "--env",
-                path.to_str().unwrap(),
-            ];
-            assert_refused(&run(&args, b""), words);
-        }
+        let args = [
+            "study",
+            "--quick",
+            "--out",
+            out.to_str().unwrap(),
+            "--env",
+            path.to_str().unwrap(),
+        ];
+        assert_refused(&run(&args, b""), words);
     }
     assert!(!out.exists(), "nothing was written");
 }
@@ -55,11 +53,9 @@ fn a_layer_that_is_not_there_is_refused() {
     let dir = TempDir::new().unwrap();
     let path = map(dir.path(), [4, 2], [1.0; 3]);
     let words = "map.exr: --layer must be a layer with colour of the file, got beauty; it has one without a name (R G B)";
-    for name in ["compare", "study"] {
-        let mut args = vec![name, "--quick", "--env", path.to_str().unwrap()];
-        args.extend(["--layer", "beauty"]);
-        assert_refused(&run(&args, b""), words);
-    }
+    let mut args = vec!["study", "--quick", "--env", path.to_str().unwrap()];
+    args.extend(["--layer", "beauty"]);
+    assert_refused(&run(&args, b""), words);
 }
 
 /// Computes one cell in a folder of any name. Merging this part alone is rejected in one line.
@@ -77,18 +73,18 @@ fn any_path_works() {
             let output = command(&[]).args(args).stdin(Stdio::null()).output();
             Run::from(output.unwrap())
         };
-        let [study, merge, quick, out, env, shard, first] = [
-            "study", "merge", "--quick", "--out", "--env", "--shard", "1/48",
+        let [study, merge, tiny, out, env, shard, first] = [
+            "study", "merge", "--tiny", "--out", "--env", "--shard", "1/12",
         ]
         .map(OsStr::new);
         let (here, sky) = (inside.as_os_str(), sky.as_os_str());
-        let run = call(&[study, quick, shard, first, out, here, env, sky]);
+        let run = call(&[study, tiny, shard, first, out, here, env, sky]);
         assert_eq!(run.code, Some(0), "{name:?}: {:?}", run.err);
         let lines = run.err.len();
-        assert!(inside.join("cells-1-of-48.jsonl").exists(), "{name:?}");
+        assert!(inside.join("cells-1-of-12.jsonl").exists(), "{name:?}");
         // A resumed run prints as many lines.
         assert_eq!(
-            call(&[study, quick, shard, first, out, here, env, sky])
+            call(&[study, tiny, shard, first, out, here, env, sky])
                 .err
                 .len(),
             lines
@@ -105,30 +101,23 @@ fn a_stretched_map_is_reported() {
     let path = map(dir.path(), [4, 4], [1.0; 3]);
     // The folder cannot be made, so that the run ends before its work begins.
     let out = path.join("out");
-    for name in ["compare", "study"] {
-        let run = run(
-            &[
-                name,
-                "--quick",
-                "--out",
-                out.to_str().unwrap(),
-                "--env",
-                path.to_str().unwrap(),
-            ],
-            b"",
-        );
-        assert_eq!(
-            (run.code, run.err.len()),
-            (Some(2), 2),
-            "{name}: {:?}",
-            run.err
-        );
-        assert!(
-            run.err[0].contains("4 x 4 is not 2:1; it is stretched"),
-            "{name}: {:?}",
-            run.err
-        );
-    }
+    let run = run(
+        &[
+            "study",
+            "--quick",
+            "--out",
+            out.to_str().unwrap(),
+            "--env",
+            path.to_str().unwrap(),
+        ],
+        b"",
+    );
+    assert_eq!((run.code, run.err.len()), (Some(2), 2), "{:?}", run.err);
+    assert!(
+        run.err[0].contains("4 x 4 is not 2:1; it is stretched"),
+        "{:?}",
+        run.err
+    );
 }
 
 /// Returns a `claims.json` that belongs to the reference.
@@ -158,7 +147,7 @@ fn claims_of_another_run_stay_out_of_the_report() {
         ),
         (
             with("cells", json!(3024)),
-            "it belongs to a run with cells 3024, expected 48",
+            "it belongs to a run with cells 3024, expected 12",
         ),
         ("{\"claims\":[{\"quo".to_owned(), "it is damaged"),
         ("{\"claims\":7}".to_owned(), "it is damaged"),

@@ -14,10 +14,10 @@ fn shards_that_are_none_are_refused() {
     for (shard, words) in [
         ("5/4", "--shard I must be from 1 to N, got \"5/4\""),
         (
-            "49/49",
-            "--shard N must be at most 48, the number of cells, got \"49/49\"",
+            "13/13",
+            "--shard N must be at most 12, the number of cells, got \"13/13\"",
         ),
-        ("99999/100000", "--shard N must be at most 48"),
+        ("99999/100000", "--shard N must be at most 12"),
         ("0/4", "--shard I must be from 1 to N"),
         ("0/0", "--shard I must be from 1 to N"),
         ("x", shape),
@@ -144,10 +144,10 @@ fn damage_before_the_last_line_is_refused() {
         .unwrap();
         String::from_utf8(line).unwrap().trim_end().to_owned()
     };
-    with(9, &sealed(48));
+    with(9, &sealed(12));
     assert_refused(
         &study(dir.path(), "1", &[]),
-        "line 9 is damaged: cell 48 is not of shard 1/1",
+        "line 9 is damaged: cell 12 is not of shard 1/1",
     );
     with(3, &sealed(4));
     assert_refused(
@@ -180,15 +180,15 @@ fn parts_that_do_not_belong_together_are_refused() {
         dir
     };
     let (first, other_seed, other_split) =
-        (shard("1", "1/24"), shard("2", "2/24"), shard("1", "3/30"));
+        (shard("1", "1/6"), shard("2", "2/6"), shard("1", "3/10"));
     let merged = |a: &TempDir, b: &TempDir| merge(out.path(), &[a.path(), b.path()]);
     assert_refused(
         &merged(&first, &other_seed),
-        "cells-2-of-24.jsonl: belongs to a run with seed 2, but",
+        "cells-2-of-6.jsonl: belongs to a run with seed 2, but",
     );
     assert_refused(
         &merged(&first, &other_split),
-        "cells-3-of-30.jsonl: is one of 30 parts, but",
+        "cells-3-of-10.jsonl: is one of 10 parts, but",
     );
     assert_refused(
         &merge(out.path(), &[out.path()]),
@@ -201,7 +201,7 @@ fn parts_that_do_not_belong_together_are_refused() {
 
     // The same cell with other figures.
     let changed = TempDir::new().unwrap();
-    let name = "cells-1-of-24.jsonl";
+    let name = "cells-1-of-6.jsonl";
     let mut read = part::read(&first.path().join(name)).unwrap();
     read.finished[0].rows[0][0] = Some(2.0);
     let mut text = part::line(&read.header).unwrap();
