@@ -5,7 +5,8 @@ mod resampled;
 
 use glam::Vec3;
 use hairis::simd::f32x8;
-use hairis_instruments::light::Environment;
+use hairis_conformance::cases;
+use hairis_instruments::light::{Environment, rounded};
 use hairis_instruments::sequence::{Independent, XiSource as _};
 use hairis_instruments::stats::{Estimate, Moments};
 use hairis_render::film::{Crop, Film};
@@ -59,8 +60,18 @@ fn under_map(lamps: bool) -> Scene {
     scene
 }
 
+/// Number of pictures of a mean, of which there are 200 in CI.
+fn seeds() -> usize {
+    cases(200)
+}
+
+/// Returns the error of a mean that has `error` with 200 pictures.
+fn scaled(error: f64) -> f64 {
+    error * (200.0 / seeds() as f64).sqrt()
+}
+
 /// Returns the mean luminance of pictures of many seeds, whose first tables have densities that are wrong by a factor.
-fn mean(scene: &Scene, integrator: Integrator, mis: Mis, samples: u32, factor: f32) -> Estimate {
+fn mean(scene: &Scene, integrator: Integrator, mis: Mis, samples: u32, factor: f64) -> Estimate {
     let luminance = |seed: u64| -> f64 {
         let settings = Settings {
             integrator,
@@ -72,7 +83,7 @@ fn mean(scene: &Scene, integrator: Integrator, mis: Mis, samples: u32, factor: f
         if factor != 1.0 {
             let table = Table::draw(&scene.sky, seed, tables.length()).expect("a sky");
             let scaled = |block: &LightSample8| LightSample8 {
-                pdf: block.pdf * f32x8::splat(factor),
+                pdf: block.pdf * f32x8::splat(rounded(factor)),
                 ..*block
             };
             let scaled: Vec<_> = table.blocks().iter().map(scaled).collect();
@@ -90,7 +101,7 @@ fn mean(scene: &Scene, integrator: Integrator, mis: Mis, samples: u32, factor: f
         );
         film.picture().luminances().iter().sum()
     };
-    let all: Vec<f64> = (0..200).into_par_iter().map(luminance).collect();
+    let all: Vec<f64> = (0..seeds() as u64).into_par_iter().map(luminance).collect();
     all.into_iter().collect::<Moments>().mean_estimate()
 }
 
@@ -109,16 +120,17 @@ fn candidates_from_a_table_are_unbiased() {
         // Whole blocks of candidates, incomplete ones, a pool of 32 rays and one of 11.
         for samples in [16, 5, 43] {
             let got = gather(&scene, Mis::Resampled, samples, 1.0);
-            assert!(got.standard_error < 3e-3 * got.value, "{got:?}");
+            assert!(got.standard_error < scaled(3e-3) * got.value, "{got:?}");
             assert!(
                 apart(&got, &expected).abs() < 4.0,
                 "{samples} rays, lamps {lamps}: {got:?} for {expected:?}"
             );
         }
-        let scaled = gather(&scene, Mis::Resampled, 32, 1.02);
+        let fault = scaled(0.02);
+        let wrong = gather(&scene, Mis::Resampled, 32, 1.0 + fault);
         assert!(
-            lamps || apart(&scaled, &expected) < -4.0,
-            "a density 2% off shows: {scaled:?} for {expected:?}"
+            lamps || apart(&wrong, &expected) < -4.0,
+            "a density that is wrong by {fault} shows: {wrong:?} for {expected:?}"
         );
     }
 }
@@ -130,7 +142,7 @@ fn paths_have_the_same_light_from_a_table() {
         // Samples of two passes, the second incomplete.
         let [got, expected] =
             [Mis::Resampled, Mis::Both].map(|mis| mean(&scene, Integrator::Path, mis, 6, 1.0));
-        assert!(got.standard_error < 1e-2 * got.value, "{got:?}");
+        assert!(got.standard_error < scaled(1e-2) * got.value, "{got:?}");
         assert!(
             apart(&got, &expected).abs() < 4.0,
             "lamps {lamps}: {got:?} for {expected:?}"

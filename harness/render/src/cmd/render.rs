@@ -221,13 +221,13 @@ fn hairs(flags: &Render, settings: &Settings) -> Result<Vec<Named>, Error> {
 
 /// Returns the file of each picture. If there are several, each name contains the name of the hair.
 fn outs(out: &Path, hairs: &[Named]) -> Result<Vec<PathBuf>, Error> {
-    if let [_] = hairs {
-        return Ok(vec![out.to_owned()]);
-    }
-    // Reject here what `check_out` would reject, so that the message has the name that was given.
+    // Reject here what `check_out` would reject, before hair is grown, so that the message has the name that was given.
     let Some(stem) = out.file_stem().filter(|_| has_ending(out)) else {
         return Err(wrong_ending(out));
     };
+    if let [_] = hairs {
+        return Ok(vec![out.to_owned()]);
+    }
     let named = |hair: &Named| {
         let mut name = stem.to_owned();
         name.push(format!("-{}.exr", hair.name));

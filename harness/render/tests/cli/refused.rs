@@ -75,7 +75,7 @@ fn bad_values_are_refused_in_one_line() {
         (&["--model", "phong"], &["phong", "gaussian"]),
         (&["--sampler", "best"], &["best", "matched"]),
         (&["--strands", "0"], &["strands", "0"]),
-        (&["--out", "file/a.exr"], &["file"]),
+        (&["--out", "file/a.exr", "--strands", "300"], &["file"]),
         (&["--out", "a.png"], &[".exr", "a.png"]),
         (&["--import", "none.hair"], &["none.hair"]),
         (&["--import", "cut.hair"], &["cut.hair"]),
