@@ -91,7 +91,7 @@ pub struct Start {
     pub hair: String,
     /// Name of the sampler, or of the model.
     pub sampler: &'static str,
-    /// What samplers have in common: the count of samples, or the time.
+    /// Protocol of the comparison: an equal count of samples, or equal time.
     pub protocol: &'static str,
     /// Samples per pixel, if the figure belongs to one count of samples.
     pub samples: Option<u32>,
