@@ -54,7 +54,7 @@ pub trait Lanes:
     #[inline(always)]
     #[must_use]
     fn fuses() -> bool {
-        matches!(Self::FUSES, Some(true))
+        const { Self::FUSES.expect("lanes that record ask their recorder") }
     }
     /// Repeats a number in every lane.
     fn splat(x: f32) -> Self;

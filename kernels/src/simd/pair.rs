@@ -60,6 +60,10 @@ impl<L: Lanes> Lanes for Pair<L> {
     const FUSES: Option<bool> = L::FUSES;
 
     #[inline(always)]
+    fn fuses() -> bool {
+        L::fuses()
+    }
+    #[inline(always)]
     fn splat(x: f32) -> Self {
         let x = L::splat(x);
         Self(x, x)
