@@ -22,7 +22,7 @@ const MODEL: &str = "gaussian";
 /// Name of the sampler that chooses rays from candidates; the candidates of the hair are drawn by its best sampler.
 pub(super) const RESAMPLED: &str = "resampled";
 /// Names of all samplers, in the order of the page.
-pub(super) const SAMPLERS: [&str; 4] = [UNIFORM, PUBLISHED, RESAMPLED, MATCHED];
+pub const SAMPLERS: [&str; 4] = [UNIFORM, PUBLISHED, RESAMPLED, MATCHED];
 
 /// Returns the samplers of hair. The last is the best: references are rendered with it, and the
 /// others are compared with it.
