@@ -13,7 +13,7 @@ use hairis::columns::{
 };
 use hairis::model::Model;
 use hairis::simd::f32x8;
-use hairis::{Conserving, Material, Material8, Sample8};
+use hairis::{Bsdf, Bsdf8, Conserving, Material, Material8, Sample, Sample8};
 use hairis_reference::{Formulas, Reference};
 
 /// Packet of samples of which only the first `N` are answers.
@@ -25,6 +25,48 @@ impl<const N: usize> Output for Leading<N> {
             self.0.lane(lane).answers(out);
         }
     }
+}
+
+// Calls of the kernel, which are not inlined: every operation below would hold a copy of its portable level.
+
+#[inline(never)]
+fn prepare<M: Model>(material: &Material<M>, wo: Vec3) -> Bsdf<M> {
+    material.prepare(wo)
+}
+
+#[inline(never)]
+fn sample<M: Model>(point: &Bsdf<M>, xi: [f32; 3]) -> Option<Sample> {
+    point.sample(xi)
+}
+
+#[inline(never)]
+fn sample8_at<M: Model>(point: &Bsdf<M>, xi: &[f32x8; 3]) -> Sample8 {
+    point.sample8(xi)
+}
+
+#[inline(never)]
+fn sample8<M: Model>(points: &Bsdf8<M>, xi: &[f32x8; 3]) -> Sample8 {
+    points.sample8(xi)
+}
+
+#[inline(never)]
+fn eval_hits<M: Model>(
+    material: &Material<M>,
+    hits: HitColumns<'_>,
+    wi: [&[f32]; 3],
+    out: EvalColumns<'_>,
+) -> Result<(), LengthError> {
+    material.eval_hits(hits, wi, out)
+}
+
+#[inline(never)]
+fn sample_hits<M: Model>(
+    material: &Material<M>,
+    hits: HitColumns<'_>,
+    xi: [&[f32]; 3],
+    out: SampleColumns<'_>,
+) -> Result<(), LengthError> {
+    material.sample_hits(hits, xi, out)
 }
 
 fn several<I: 'static, O: Output + 'static>(
@@ -66,8 +108,8 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
             xi.iter().for_each(|xi| keep(&point.sample(platform(*xi))));
         }),
         several(pairs(wo, rows), in_turn, move |(wo, xi), keep| {
-            let point = material.prepare(*wo);
-            xi.iter().for_each(|xi| keep(&point.sample(*xi)));
+            let point = prepare(&material, *wo);
+            xi.iter().for_each(|xi| keep(&sample(&point, *xi)));
         }),
     )
     .levels(EIGHT, |level| {
@@ -77,7 +119,7 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
             place,
             move |(wo, xi), keep| {
                 let points = material.prepare8(wo);
-                xi.iter().for_each(|xi| keep(&points.sample8(xi)));
+                xi.iter().for_each(|xi| keep(&sample8(&points, xi)));
             },
         )
     });
@@ -92,19 +134,20 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
         contenders = contenders.levels(EIGHT_AT_ONE, |level| {
             let material = material.with_level(level);
             several(pairs(wo, &packed), in_turn, move |(wo, xi), keep| {
-                let point = material.prepare(*wo);
+                let point = prepare(&material, *wo);
                 xi.iter()
-                    .for_each(|xi| keep(&Leading::<N>(point.sample8(xi))));
+                    .for_each(|xi| keep(&Leading::<N>(sample8_at(&point, xi))));
             })
         });
     } else {
         let rows = joined(&arrays(wo), &inputs.xi);
-        contenders =
-            contenders.levels(HITS, |level| sample_hits(&rows, material.with_level(level)));
+        contenders = contenders.levels(HITS, |level| {
+            sampled_hits(&rows, material.with_level(level))
+        });
         if const { !M::CONSERVES } {
             let material = Material::new(&Conserving(M::MODEL), params);
             contenders = contenders.levels(CONSERVING_HITS, |level| {
-                sample_hits(&rows, material.with_level(level))
+                sampled_hits(&rows, material.with_level(level))
             });
         }
     }
@@ -113,7 +156,7 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
 }
 
 /// Evaluates rows of hits and directions on one material.
-fn eval_hits<M: Model + 'static>(rows: &[[f32; 6]], material: Material<M>) -> Box<dyn Pass> {
+fn evaluated_hits<M: Model + 'static>(rows: &[[f32; 6]], material: Material<M>) -> Box<dyn Pass> {
     let call = move |[x, y, z, u, v, w]: [&[f32]; 6], [r, g, b, pdf]: [&mut [f32]; 4]| {
         let (wo, out) = (
             [x, y, z],
@@ -122,7 +165,7 @@ fn eval_hits<M: Model + 'static>(rows: &[[f32; 6]], material: Material<M>) -> Bo
                 pdf: Some(pdf),
             },
         );
-        material.eval_hits(HitColumns { wo, h: None }, [u, v, w], out)
+        eval_hits(&material, HitColumns { wo, h: None }, [u, v, w], out)
     };
     Box::new(Slices::new(TIMED_DIRECTIONS, rows, call))
 }
@@ -150,9 +193,9 @@ fn sample_rows(
 }
 
 /// Samples rows of hits on one material.
-fn sample_hits<M: Model + 'static>(rows: &[[f32; 6]], material: Material<M>) -> Box<dyn Pass> {
+fn sampled_hits<M: Model + 'static>(rows: &[[f32; 6]], material: Material<M>) -> Box<dyn Pass> {
     sample_rows(rows, move |hits, xi, out| {
-        material.sample_hits(hits, xi, out)
+        sample_hits(&material, hits, xi, out)
     })
 }
 
@@ -194,18 +237,20 @@ pub(super) fn eval<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
             M::point(&std, platform(*wo), Platform(0.0)).eval_pdf(platform(*wi))
         }),
         task(&pairs(&inputs.wo, &inputs.wi), move |(wo, wi)| {
-            material.prepare(*wo).eval_pdf(*wi)
+            prepare(&material, *wo).eval_pdf(*wi)
         }),
     )
     .levels(EIGHT, |level| {
         let material = material.with_level(level);
         task(&eights, move |(wo, wi)| material.prepare8(wo).eval_pdf8(wi))
     })
-    .levels(HITS, |level| eval_hits(&rows, material.with_level(level)));
+    .levels(HITS, |level| {
+        evaluated_hits(&rows, material.with_level(level))
+    });
     if const { !M::CONSERVES } {
         let material = Material::new(&Conserving(M::MODEL), params);
         contenders = contenders.levels(CONSERVING_HITS, |level| {
-            eval_hits(&rows, material.with_level(level))
+            evaluated_hits(&rows, material.with_level(level))
         });
     }
     Ok((
@@ -246,7 +291,7 @@ pub(super) fn mixed<M: Formulas>(inputs: &TimedInputs<M::Params>, pack_each: boo
             },
         ),
         task(&pairs(&numbered, &inputs.xi), move |((i, wo), xi)| {
-            materials[*i].prepare(*wo).sample(*xi)
+            sample(&prepare(&materials[*i], *wo), *xi)
         }),
     )
     .levels(EIGHT, |level| {
@@ -255,10 +300,10 @@ pub(super) fn mixed<M: Formulas>(inputs: &TimedInputs<M::Params>, pack_each: boo
             let materials = materials.map(|material| material.with_level(level));
             task(&eights, move |(wo, xi)| {
                 let packed = Material8::pack(materials.each_ref());
-                packed.prepare8(wo).sample8(xi)
+                sample8(&packed.prepare8(wo), xi)
             })
         } else {
-            task(&eights, move |(wo, xi)| packed.prepare8(wo).sample8(xi))
+            task(&eights, move |(wo, xi)| sample8(&packed.prepare8(wo), xi))
         }
     });
     if !pack_each {
