@@ -3,13 +3,10 @@
 mod appended;
 mod columns;
 mod direction;
-mod files;
-mod interrupt;
 mod light;
 mod machine;
 mod markup;
 mod plot;
-mod program;
 mod quadrature;
 mod report;
 mod sequence;

@@ -1,0 +1,3 @@
+//! Tests of materials, as one binary.
+
+mod material;

@@ -1,0 +1,87 @@
+//! Parameters of materials: words, fields that may be missing, and fields of which one is given.
+
+use hairis_materials::MaterialSpec;
+use hairis_variants::{ChiangParams, KajiyaKayParams, Parameters};
+
+/// Reads a material of these parameters, and returns them or the refusal.
+fn params<P: Parameters>(model: &str, text: &str) -> Result<P, String> {
+    let all = MaterialSpec::parse_all(&format!(r#"{{"model":"{model}","params":{text}}}"#))?;
+    P::from_values(&all[0].values).map_err(|error| error.to_string())
+}
+
+#[test]
+fn words_and_fields_that_may_be_missing() {
+    let read = params::<KajiyaKayParams>(
+        "kajiya-kay",
+        r#"{"kd":[0.1,0.2,0.3],"ks":[0,0,0],"exponent":9,"form":"published"}"#,
+    );
+    let read = read.expect("legal").values();
+    assert_eq!(
+        (read.word("form"), read.numbers("exponent")),
+        ("published", &[9.0][..])
+    );
+    let read = params::<KajiyaKayParams>(
+        "kajiya-kay",
+        r#"{"kd":[0.1,0.2,0.3],"ks":[0,0,0],"exponent":9}"#,
+    )
+    .expect("legal");
+    assert_eq!(read.values().word("form"), "reciprocal");
+    for (text, problem) in [
+        (r#"{"ks":[0,0,0],"exponent":9}"#, "params.kd: missing"),
+        (
+            r#"{"kd":[0,0,0],"ks":[0,0,0],"exponent":9,"form":"new"}"#,
+            "params.form: must be \"reciprocal\" or \"published\", got \"new\"",
+        ),
+        (
+            r#"{"kd":[0,-1,0],"ks":[0,0,0],"exponent":9}"#,
+            "params.kd[1]: must be finite and at least 0, got -1",
+        ),
+        (
+            r#"{"kd":[0,0,0],"ks":[0,0,0],"exponent":0.1}"#,
+            "params.exponent: must be in [1, 10000], got 0.1",
+        ),
+    ] {
+        assert_eq!(
+            params::<KajiyaKayParams>("kajiya-kay", text),
+            Err(problem.to_owned()),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn one_field_of_a_group() {
+    let read = |rest: &str| {
+        params::<ChiangParams>("chiang", &format!(r#"{{"beta_m":0.3,"beta_n":0.3{rest}}}"#))
+    };
+    assert_eq!(read(r#","melanin":[0.3,0]"#), Ok(ChiangParams::blond()));
+    assert_eq!(
+        read(r#","tilt":0,"eta":1.5,"sigma_a":[0,1,2]"#).map(|read| read.desc().sigma_a),
+        Ok([0.0, 1.0, 2.0])
+    );
+    assert!(read(r#","color":[0.5,0.4,0.3]"#).is_ok(), "a colour");
+    for (rest, problem) in [
+        (
+            "",
+            "params.sigma_a: missing; give one of sigma_a, melanin, melanin_amount, color",
+        ),
+        (
+            r#","melanin":[0,0],"color":[0,0,0]"#,
+            "params.melanin: given together with color; give one of them",
+        ),
+        (
+            r#","melanin":[0,-1]"#,
+            "params.melanin[1]: must be finite and at least 0, got -1",
+        ),
+        (
+            r#","color":[0,1.5,0]"#,
+            "params.color[1]: must be in [0, 1], got 1.5",
+        ),
+        (
+            r#","sigma_a":[0,0,0],"eta":0.5"#,
+            "params.eta: must be in [1, 4], got 0.5",
+        ),
+    ] {
+        assert_eq!(read(rest), Err(problem.to_owned()), "{rest}");
+    }
+}
