@@ -87,7 +87,7 @@ pub const FALSE_ALARM: f64 = 1e-3;
 /// Samplers that are compared, in the order of reports. "Stratified uniform" is the first sampler with
 /// [`SequenceKind::Stratified`](hairis_instruments::sequence::SequenceKind::Stratified) numbers.
 ///
-/// The matched sampler is the documented default one; [`study`](crate::study) measures every sampler.
+/// The matched sampler is the documented default one; `hairis study` measures every sampler.
 pub const SAMPLERS: [Sampler; 3] = [Sampler::Uniform, Sampler::Published, Sampler::Matched];
 
 /// Figures of [`SAMPLERS`], in their order.

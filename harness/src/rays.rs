@@ -53,7 +53,7 @@ pub const VISIBLE: [f64; 3] = [0.25, 0.5, 0.75];
 pub const HALF: f64 = 0.5;
 
 /// Number of candidates of each technique that are drawn at once, which is that of the largest pool.
-const MOST: usize = 32;
+pub const MOST: usize = 32;
 
 /// Returns every pool with each number of rays from it, by place in [`SIZES`] and [`RAYS`], with no more rays than candidates.
 pub fn pools() -> impl Iterator<Item = (usize, usize)> {
