@@ -56,7 +56,7 @@ where
     let wo = Vec3::new(wo[0][0], wo[1][0], wo[2][0]);
     for level in Level::available() {
         let hits = Hit8::new(Vec3x8::from([wo; 8]), f32x8::ZERO);
-        let bsdf8 = material.with_level(level).prepare8(&hits);
+        let bsdf8 = material.with_level(level).prepare8(hits);
         let bsdf = bsdf8.lane(0);
         for (len, partition) in [
             (0, Partition::All),

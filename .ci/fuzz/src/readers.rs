@@ -2,10 +2,10 @@
 
 use hairis_harness::args::CodePath;
 use hairis_harness::cmd::eval;
-use hairis_study::study::part;
 use hairis_instruments::light::{Environment, Light};
 use hairis_render::formats::{Curve, Head, Import, Up, import_bytes, import_head_bytes};
 use hairis_render::part::Part;
+use hairis_study::study::part;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
