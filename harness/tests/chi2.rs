@@ -7,13 +7,20 @@ use glam::Vec3;
 use hairis::params::HairDesc;
 use hairis::simd::f32x8;
 use hairis::{HairParams, Lobe, LobeMask, Sample8};
+use hairis_conformance::cases;
 use hairis_conformance::statistics::{AngleEdges, ChiSquare, chi_square, ks_statistic};
 use hairis_instruments::sequence::Independent;
 use hairis_instruments::stats::sidak;
 use hairis_reference::{HairReference, MatchedReference, Reference, Shape};
 use hairis_variants::{ModelId, Parameters as _};
 
-const SAMPLES: u32 = 1_000_000;
+/// Number of samples of a test in CI, and of the control in every size.
+const SAMPLES: usize = 1_000_000;
+/// Returns the number of samples of a test in this size, a multiple of eight.
+fn samples() -> usize {
+    cases(SAMPLES / 8) * 8
+}
+
 /// Inclinations of the viewer in degrees. Errors of the bounds show at the tilted and grazing ones.
 const THETA_O: [f32; 4] = [0.0, 45.0, 85.0, -80.0];
 /// Cosine of the caps in which samples are discarded.
@@ -86,10 +93,10 @@ fn registered(model: ModelId) -> impl Fn(&HairParams, Vec3, LobeMask) -> Draw {
     }
 }
 
-/// Calls `f` with each of a million samples, or with `None` for a discarded one.
-fn for_each_sample(draw: &Draw, stream: u64, mut f: impl FnMut(Option<Vec3>)) {
+/// Calls `f` with each of `count` samples, a multiple of eight, or with `None` for a discarded one.
+fn for_each_sample(draw: &Draw, stream: u64, count: usize, mut f: impl FnMut(Option<Vec3>)) {
     let mut xi = Independent::new(2012, stream);
-    for _ in 0..SAMPLES / 8 {
+    for _ in 0..count / 8 {
         let packet = core::array::from_fn(|_| f32x8::new(core::array::from_fn(|_| xi.next_f32())));
         let eight = draw(&packet);
         for lane in 0..8 {
@@ -144,10 +151,12 @@ struct SphereCells {
     edges: [AngleEdges; 2],
     /// Expected numbers, row by row, then one for the caps, whose samples are discarded.
     expected: Vec<f64>,
+    /// Number of samples.
+    count: usize,
 }
 
 impl SphereCells {
-    fn new(reference: &impl ReferenceSampler, mask: LobeMask) -> Self {
+    fn new(reference: &impl ReferenceSampler, mask: LobeMask, count: usize) -> Self {
         let share = reference.probabilities().0;
         let of = |lobe: Lobe| share[lobe.index()] * f64::from(mask.factor(lobe));
         let total: f64 = Lobe::ALL.into_iter().map(of).sum();
@@ -176,7 +185,7 @@ impl SphereCells {
         tidy(&mut phi, PI);
         let mut expected = vec![0.0; (theta.len() - 1) * (phi.len() - 1) + 1];
         for lobe in Lobe::ALL.into_iter().filter(|lobe| mask.contains(*lobe)) {
-            let number = f64::from(SAMPLES) * of(lobe) / total;
+            let number = count as f64 * of(lobe) / total;
             // Every cdf of phi ascends from -pi to 0 and from 0 to pi, and some cdfs jump between.
             let part = |ends: &[f64]| {
                 let end = if ends[1] == 0.0 {
@@ -205,6 +214,7 @@ impl SphereCells {
             phi,
             edges,
             expected,
+            count,
         }
     }
 
@@ -220,10 +230,10 @@ impl SphereCells {
         }
     }
 
-    /// Counts a million samples and tests them.
+    /// Counts the samples and tests them.
     fn test(&self, draw: &Draw, wo: Vec3, stream: u64) -> (ChiSquare, Vec<u64>) {
         let mut observed = vec![0; self.expected.len()];
-        for_each_sample(draw, stream, |wi| {
+        for_each_sample(draw, stream, self.count, |wi| {
             let cell = wi.map_or(self.expected.len() - 1, |wi| self.index(wo, wi));
             observed[cell] += 1;
         });
@@ -267,6 +277,7 @@ fn check<T: ReferenceSampler>(
 ) {
     let level = sidak(0.01, TESTS);
     let (mut least, mut least_at, mut stream) = (1.0_f64, String::new(), seed * 1000);
+    let count = samples();
     for (name, params) in materials() {
         for degrees in THETA_O {
             let wo = wo(degrees);
@@ -282,9 +293,9 @@ fn check<T: ReferenceSampler>(
                 if share < 1e-25 {
                     continue;
                 }
-                let cells = SphereCells::new(&reference, mask);
+                let cells = SphereCells::new(&reference, mask, count);
                 let at = format!("{shape} {name} {degrees} {lobe}");
-                let mass: f64 = cells.expected.iter().sum::<f64>() / f64::from(SAMPLES);
+                let mass: f64 = cells.expected.iter().sum::<f64>() / count as f64;
                 assert!(
                     (mass - 1.0).abs() < 1e-9,
                     "{at}: the density has a mass of {mass}"
@@ -360,7 +371,7 @@ fn widths_off_by_a_twentieth_are_found() {
             double(wo),
         );
         for (lobe, mask) in masks() {
-            let cells = SphereCells::new(&reference, mask);
+            let cells = SphereCells::new(&reference, mask, SAMPLES);
             let (result, _) = cells.test(
                 &registered(ModelId::Gaussian)(&widened(1.05), wo, mask),
                 wo,
@@ -376,7 +387,8 @@ fn widths_off_by_a_twentieth_are_found() {
 
 #[test]
 fn every_sampler_on_the_line_follows_its_cdf() {
-    let limit = 1.95 / f64::from(SAMPLES).sqrt();
+    let count = samples();
+    let limit = 1.95 / (count as f64).sqrt();
     let mut worst = 0.0_f64;
     for (name, params) in materials() {
         for degrees in [0.0, 85.0] {
@@ -387,7 +399,7 @@ fn every_sampler_on_the_line_follows_its_cdf() {
                 let mut uniform = [const { Vec::new() }; 2];
                 let stream = 9000 + lobe.index() as u64;
                 let draw = registered(ModelId::Gaussian)(&params, wo, LobeMask::of(&[lobe]));
-                for_each_sample(&draw, stream, |wi| {
+                for_each_sample(&draw, stream, count, |wi| {
                     let Some(wi) = wi else { return };
                     let [theta, phi] = angles(wo, wi);
                     uniform[0].push(reference.cdf_theta(lobe, theta));
@@ -395,7 +407,7 @@ fn every_sampler_on_the_line_follows_its_cdf() {
                 });
                 for (axis, u) in ["theta", "phi"].into_iter().zip(&mut uniform) {
                     assert!(
-                        u.len() > 990_000,
+                        u.len() > count / 100 * 99,
                         "{name} {degrees} {lobe:?}: only {} were kept",
                         u.len()
                     );

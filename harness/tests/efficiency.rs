@@ -148,7 +148,7 @@ fn every_estimator_agrees_with_quadrature() {
                 let n = if light.name() == Sun::NAME {
                     1_000_000
                 } else {
-                    200_000
+                    hairis_conformance::cases(200_000)
                 };
                 let tally = independent(&case, technique, light, [31, (16 * k + t) as u64], n);
                 let z = bias_z(&tally.moments, reference.estimate());
