@@ -11,7 +11,7 @@ packages=(hairis hairis-variants hairis-capi hairis-reference hairis-conformance
 rm -rf "$target/package"
 cargo package -q --no-verify --allow-dirty --target-dir "$target" "${packages[@]/#/-p}" 2> "$dir/log" || { cat "$dir/log"; exit 1; }
 # A workspace of the archives, with the profiles and the versions of this one.
-sed -e "s/^members = .*/members = [$(printf '"%s",' "${packages[@]}")]/" Cargo.toml > "$dir/Cargo.toml"
+sed -e "s/^members = .*/members = [$(printf '"%s",' "${packages[@]}")]/" -e '/^default-members = /d' Cargo.toml > "$dir/Cargo.toml"
 cp Cargo.lock "$dir"
 echo '[patch.crates-io]' >> "$dir/Cargo.toml"
 for package in "${packages[@]}"; do
