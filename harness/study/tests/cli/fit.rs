@@ -25,25 +25,23 @@ fn fixed_fields_that_the_start_lacks_are_refused() {
 #[test]
 fn reports_that_cannot_be_written_are_refused_before_any_work() {
     let fit: &[&str] = &["fit", "--from", "gaussian", "--to", "cauchy"];
-    {
-        for name in ["figures", "report.html"] {
-            let dir = tempfile::tempdir().unwrap();
-            let taken = dir.path().join(name);
-            if name == "figures" {
-                fs::write(taken, "").unwrap();
-            } else {
-                fs::create_dir(taken).unwrap();
-            }
-            let out = ["--out", dir.path().to_str().unwrap()];
-            let run = run(&[fit, &out].concat(), b"");
-            assert_eq!((run.code, run.err.len()), (Some(2), 1), "{:?}", run.err);
-            assert!(
-                run.err[0].contains("cannot write") && run.err[0].contains(name),
-                "{:?}",
-                run.err
-            );
-            let is_result = |name: &String| name.ends_with(".json");
-            assert!(!names(dir.path()).iter().any(is_result), "{name}");
+    for name in ["figures", "report.html"] {
+        let dir = tempfile::tempdir().unwrap();
+        let taken = dir.path().join(name);
+        if name == "figures" {
+            fs::write(taken, "").unwrap();
+        } else {
+            fs::create_dir(taken).unwrap();
         }
+        let out = ["--out", dir.path().to_str().unwrap()];
+        let run = run(&[fit, &out].concat(), b"");
+        assert_eq!((run.code, run.err.len()), (Some(2), 1), "{:?}", run.err);
+        assert!(
+            run.err[0].contains("cannot write") && run.err[0].contains(name),
+            "{:?}",
+            run.err
+        );
+        let is_result = |name: &String| name.ends_with(".json");
+        assert!(!names(dir.path()).iter().any(is_result), "{name}");
     }
 }
