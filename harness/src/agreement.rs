@@ -214,14 +214,20 @@ pub fn of_model(
     let part = |chunk: &[u32]| -> Result<Vec<Column>, ParamError> {
         let mut columns = empty();
         for index in chunk {
-            let packet = Packet::draw(model, formulas, region, seed, u64::from(*index))?;
+            let mut packet = Packet::draw(model, formulas, region, seed, u64::from(*index))?;
             for (path, columns) in paths
                 .iter()
                 .zip(columns.chunks_exact_mut(Quantity::ALL.len()))
             {
-                measure(model, region, &packet, *path, &mut |quantity, measured| {
-                    columns[quantity as usize].add(measured);
-                })?;
+                measure(
+                    model,
+                    region,
+                    &mut packet,
+                    *path,
+                    &mut |quantity, measured| {
+                        columns[quantity as usize].add(measured);
+                    },
+                )?;
             }
         }
         Ok(columns)

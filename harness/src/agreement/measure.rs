@@ -1,13 +1,13 @@
 //! Errors of one packet, by code path and quantity.
 
-use super::packet::Packet;
+use super::packet::{Exact, Packet};
 use super::{Quantity, Region};
 use core::f64::consts::TAU;
 use glam::Vec3;
 use hairis::simd::Level;
 use hairis::{Eval, Hit, Lobe, ParamError, Sample, Vec3x8};
 use hairis_instruments::direction::to_f64;
-use hairis_reference::{Accuracy, Reference, accuracy, slack};
+use hairis_reference::{Accuracy, Reference, accuracy};
 use hairis_variants::{AnyMaterial8, ModelId, Values};
 use wide::f32x8;
 
@@ -73,15 +73,11 @@ pub(super) struct LanePlace {
 pub(super) fn measure(
     model: ModelId,
     region: Region,
-    packet: &Packet,
+    packet: &mut Packet,
     path: CodePath,
     keep: &mut impl FnMut(Quantity, LocatedError),
 ) -> Result<(), ParamError> {
-    let materials = packet
-        .values
-        .iter()
-        .map(|values| model.material(values))
-        .collect::<Result<Vec<_>, _>>()?;
+    let materials = &packet.materials;
     let hit = |k: usize| Hit {
         wo: packet.wo[k].into(),
         h: packet.h[k],
@@ -130,8 +126,8 @@ pub(super) fn measure(
             )
         });
         let compared = [(wi, *eval, None)].into_iter().chain(drawn);
-        for (wi, eval, sample) in compared.filter(|(wi, ..)| region.holds(packet.wo[point], *wi)) {
-            let (values, wo, h) = (packet.values[point], packet.wo[point], packet.h[point]);
+        let (values, wo, h) = (packet.values[point], packet.wo[point], packet.h[point]);
+        for (wi, eval, sample) in compared.filter(|(wi, ..)| region.holds(wo, *wi)) {
             let place = LanePlace {
                 values,
                 wo,
@@ -139,79 +135,75 @@ pub(super) fn measure(
                 wi,
                 xi: sample.map(|_| packet.xi[k]),
             };
-            let exact = Exact {
-                model,
+            let exact = packet.exact(model, point, wi)?;
+            let comparison = AtPlace {
                 accuracy: accuracy(model),
-                truth: &*packet.truth[point],
+                truth: &*packet.truth[point].formulas,
+                exact,
                 place,
             };
-            exact.errors(&eval, sample, keep)?;
+            comparison.errors(&eval, sample, keep);
         }
     }
     Ok(())
 }
 
 /// Formulas at one place, which the kernels are compared with.
-struct Exact<'a> {
-    model: ModelId,
+struct AtPlace<'a> {
     accuracy: Accuracy,
     truth: &'a dyn Reference<f64>,
+    exact: Exact,
     place: LanePlace,
 }
 
-impl Exact<'_> {
+impl AtPlace<'_> {
     /// Passes to `keep` the errors of value and density at the direction and, if the direction is a sample, those of its weight and cdf.
     fn errors(
         &self,
         eval: &Eval,
         sample: Option<Sample>,
         keep: &mut impl FnMut(Quantity, LocatedError),
-    ) -> Result<(), ParamError> {
+    ) {
         use Quantity::{Pdf, SampleCdf, SamplePdf, SampleValue, SampleWeight, Value};
-        let LanePlace { values, wo, wi, .. } = &self.place;
-        let slack = slack(self.model, values, to_f64(*wo), to_f64(*wi))?;
         let [pdf, value] = if sample.is_some() {
             [SamplePdf, SampleValue]
         } else {
             [Pdf, Value]
         };
+        let slack = self.exact.slack;
         keep(
             pdf,
-            self.compare(
-                pdf,
-                [eval.pdf],
-                |wi| [self.truth.pdf(wi)],
-                self.pdf_slack(slack),
-            ),
+            self.compare(pdf, [eval.pdf], self.pdf_slack(), |_, _, pdf| [pdf]),
         );
         keep(
             value,
-            self.compare(value, eval.value, |wi| self.truth.eval(wi), slack),
+            self.compare(value, eval.value, slack, |_, value, _| value),
         );
-        let Some(sample) = sample else { return Ok(()) };
-        let over_pdf = |wi: [f64; 3]| wi[1].hypot(wi[2]) / self.truth.pdf(wi);
-        let weight = |wi: [f64; 3]| self.truth.eval(wi).map(|s| s * over_pdf(wi));
-        let slack = slack.map(|s| s * over_pdf(to_f64(*wi)));
+        let Some(sample) = sample else { return };
+        let weight = |wi: [f64; 3], value: [f64; 3], pdf: f64| {
+            let over_pdf = wi[1].hypot(wi[2]) / pdf;
+            value.map(|s| s * over_pdf)
+        };
+        let slack = weight(to_f64(self.place.wi), slack, self.exact.pdf);
         keep(
             SampleWeight,
-            self.compare(SampleWeight, sample.weight, weight, slack),
+            self.compare(SampleWeight, sample.weight, slack, weight),
         );
         if let Some(cdf) = self.cdf(sample.lobe) {
             keep(SampleCdf, cdf);
         }
-        Ok(())
     }
 
-    /// Returns the error of `got` against `truth` at the direction.
+    /// Returns the error of `got` against what `of` makes of the direction, its value and its density.
     fn compare<const N: usize>(
         &self,
         quantity: Quantity,
         got: [f32; N],
-        truth: impl Fn([f64; 3]) -> [f64; N],
         slack: [f64; N],
+        of: impl Fn([f64; 3], [f64; 3], f64) -> [f64; N],
     ) -> LocatedError {
         let wi = to_f64(self.place.wi);
-        let want = truth(wi);
+        let want = of(wi, self.exact.value, self.exact.pdf);
         let worst = |slack: [f64; N]| {
             (0..N)
                 .map(|c| relative(got[c], want[c], slack[c]))
@@ -220,7 +212,11 @@ impl Exact<'_> {
         let error = worst(slack);
         let bound = quantity.bound(&self.accuracy);
         let unexplained = error > bound && {
-            let (low, high) = (truth(rotate(wi, -ROUNDING)), truth(rotate(wi, ROUNDING)));
+            let [low, high] = [-ROUNDING, ROUNDING].map(|angle| {
+                let wi = rotate(wi, angle);
+                let (value, pdf) = self.truth.eval_pdf(wi);
+                of(wi, value, pdf)
+            });
             worst(core::array::from_fn(|c| {
                 slack[c] + (low[c] - want[c]).abs().max((high[c] - want[c]).abs())
             })) > bound
@@ -254,15 +250,15 @@ impl Exact<'_> {
 
     /// Returns the absolute error of a density that the model allows by design, given the absolute error of S. A density proportional to S,
     /// as the mean of RGB, vanishes with S.
-    fn pdf_slack(&self, slack: [f64; 3]) -> [f64; 1] {
+    fn pdf_slack(&self) -> [f64; 1] {
+        let Exact { value, pdf, slack } = self.exact;
         if !self.accuracy.slack_in_pdf || slack == [0.0; 3] {
             return [0.0];
         }
-        let wi = to_f64(self.place.wi);
-        let (slack, value): (f64, f64) = (slack.iter().sum(), self.truth.eval(wi).iter().sum());
+        let (slack, value): (f64, f64) = (slack.iter().sum(), value.iter().sum());
         // If S is too small for a double, the whole density is allowed as error.
         let share = if value > 0.0 { slack / value } else { 1.0 };
-        [share * self.truth.pdf(wi)]
+        [share * pdf]
     }
 }
 

@@ -7,8 +7,8 @@ use glam::Vec3;
 use hairis::ParamError;
 use hairis_instruments::direction::{direction, to_f64, uniform_direction};
 use hairis_instruments::sequence::{Independent, stream_id};
-use hairis_reference::{Reference, reference};
-use hairis_variants::{ModelId, Values};
+use hairis_reference::{Reference, reference, slack};
+use hairis_variants::{AnyMaterial, ModelId, Values};
 
 /// Least and largest angle to the axis, rad, of a direction that counts as near the axis.
 pub(super) const AXIS: [f64; 2] = [1e-3, 1e-2];
@@ -41,10 +41,45 @@ pub(super) struct Packet {
     /// Directions, all eight for the first shading point.
     pub(super) wi_shared: [Vec3; 8],
     pub(super) xi: [[f32; 3]; 8],
-    pub(super) truth: Vec<Box<dyn Reference<f64>>>,
+    pub(super) materials: Vec<AnyMaterial>,
+    pub(super) truth: Vec<Truth>,
+}
+
+/// Formulas of a shading point, with what they have answered: many code paths draw the same sample to the bit.
+pub(super) struct Truth {
+    pub(super) formulas: Box<dyn Reference<f64>>,
+    known: Vec<([u32; 3], Exact)>,
+}
+
+/// Answers of the formulas in one direction.
+#[derive(Clone, Copy)]
+pub(super) struct Exact {
+    pub(super) value: [f64; 3],
+    pub(super) pdf: f64,
+    /// Absolute error of the value that is allowed, by channel.
+    pub(super) slack: [f64; 3],
 }
 
 impl Packet {
+    /// Returns the formulas' answers at shading point `k`.
+    pub(super) fn exact(
+        &mut self,
+        model: ModelId,
+        k: usize,
+        wi: Vec3,
+    ) -> Result<Exact, ParamError> {
+        let Truth { formulas, known } = &mut self.truth[k];
+        let bits = wi.to_array().map(f32::to_bits);
+        if let Some((_, exact)) = known.iter().find(|(at, _)| *at == bits) {
+            return Ok(*exact);
+        }
+        let (value, pdf) = formulas.eval_pdf(to_f64(wi));
+        let slack = slack(model, &self.values[k], to_f64(self.wo[k]), to_f64(wi))?;
+        let exact = Exact { value, pdf, slack };
+        known.push((bits, exact));
+        Ok(exact)
+    }
+
     /// Draws packet `index` of a run, which does not depend on what other packets are drawn.
     pub(super) fn draw(
         model: ModelId,
@@ -71,7 +106,16 @@ impl Packet {
             }
         });
         let truth = (0..8)
-            .map(|k| formulas(&values[k], wo[k], h[k]))
+            .map(|k| {
+                Ok(Truth {
+                    formulas: formulas(&values[k], wo[k], h[k])?,
+                    known: Vec::new(),
+                })
+            })
+            .collect::<Result<_, _>>()?;
+        let materials = values
+            .iter()
+            .map(|values| model.material(values))
             .collect::<Result<_, _>>()?;
         Ok(Self {
             values,
@@ -80,6 +124,7 @@ impl Packet {
             wi,
             wi_shared,
             xi,
+            materials,
             truth,
         })
     }

@@ -56,25 +56,38 @@ impl Halton {
     /// Panics if `dim` is not below the number of [`HALTON_BASES`].
     #[must_use]
     pub fn coordinate(&self, dim: usize, index: u64) -> f64 {
-        let base = HALTON_BASES[dim];
-        let b = u64::from(base);
-        let mut hash = mix(self.key ^ mix(dim as u64));
-        let mut rest = index;
-        let mut value = 0.0;
-        let mut scale = 1.0;
-        // Digits down to 2^-32 keep the nesting; below that, a hash of the whole index places the point at random.
-        while scale > 1.0 / 4_294_967_296.0 {
-            let digit = rest % b;
-            rest /= b;
-            let a = 1 + below(hash, b - 1);
-            let c = below(mix(hash), b);
-            scale /= f64::from(base);
-            value += ((a * digit + c) % b) as f64 * scale;
-            hash = mix(hash ^ mix(digit + 1));
+        let hash = mix(self.key ^ mix(dim as u64));
+        // A base that the compiler knows is divided by in a third of the time.
+        macro_rules! in_base {
+            ($($d:literal)*) => {
+                match dim {
+                    $($d => radical_inverse::<{ HALTON_BASES[$d] }>(hash, index),)*
+                    _ => panic!("Halton has {} dimensions, {dim} asked for", HALTON_BASES.len()),
+                }
+            };
         }
-        value += scale * unit_f64(mix(hash ^ mix(rest)));
-        value.min(1.0 - f64::EPSILON / 2.0)
+        in_base!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15)
     }
+}
+
+/// Returns the radical inverse of `index` in `BASE`, with digits permuted by `hash` and by all earlier digits, in [0, 1).
+fn radical_inverse<const BASE: u32>(mut hash: u64, index: u64) -> f64 {
+    let b = u64::from(BASE);
+    let mut rest = index;
+    let mut value = 0.0;
+    let mut scale = 1.0;
+    // Digits down to 2^-32 keep the nesting; below that, a hash of the whole index places the point at random.
+    while scale > 1.0 / 4_294_967_296.0 {
+        let digit = rest % b;
+        rest /= b;
+        let a = 1 + below(hash, b - 1);
+        let c = below(mix(hash), b);
+        scale /= f64::from(BASE);
+        value += ((a * digit + c) % b) as f64 * scale;
+        hash = mix(hash ^ mix(digit + 1));
+    }
+    value += scale * unit_f64(mix(hash ^ mix(rest)));
+    value.min(1.0 - f64::EPSILON / 2.0)
 }
 
 impl XiSource for Halton {
