@@ -21,6 +21,7 @@ mod numbers;
 mod part;
 mod picture;
 mod protocol;
+mod radiance;
 mod rays;
 mod saver;
 mod scene;

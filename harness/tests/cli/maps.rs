@@ -1,16 +1,14 @@
 //! Environment maps that `compare` refuses or remarks on.
 
 use super::run;
-use image::{ImageFormat, Rgb32FImage};
+use exr::prelude::write_rgb_file;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 /// Writes an `OpenEXR` map of one colour.
-fn map(dir: &Path, [width, height]: [u32; 2], pixel: [f32; 3]) -> PathBuf {
+fn map(dir: &Path, [width, height]: [usize; 2], pixel: [f32; 3]) -> PathBuf {
     let path = dir.join("map.exr");
-    let map = Rgb32FImage::from_pixel(width, height, image::Rgb(pixel));
-    let map = image::DynamicImage::ImageRgb32F(map);
-    map.save_with_format(&path, ImageFormat::OpenExr).unwrap();
+    write_rgb_file(&path, width, height, |_, _| pixel.into()).unwrap();
     path
 }
 

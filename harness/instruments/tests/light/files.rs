@@ -1,7 +1,9 @@
 //! Tests of files that are written here, read back, cut short, renamed and missing.
 
 use super::*;
-use image::{ImageFormat, Rgb32FImage, Rgba32FImage};
+use exr::prelude::{
+    Image, SpecificChannels, Vec2, WritableImage as _, write_rgb_file, write_rgba_file,
+};
 use std::path::{Path, PathBuf};
 
 pub(super) fn directory() -> tempfile::TempDir {
@@ -15,16 +17,28 @@ fn texel(x: u32, y: u32) -> [f32; 3] {
 /// Writes a map of 16 x 8 texels, as Radiance HDR or `OpenEXR` by the ending of `name`.
 fn write(dir: &Path, name: &str) -> PathBuf {
     let path = dir.join(name);
-    let map = Rgb32FImage::from_fn(16, 8, |x, y| image::Rgb(texel(x, y)));
-    let format = if name.ends_with("hdr") {
-        ImageFormat::Hdr
+    if name.ends_with("hdr") {
+        let rows = (0..8).flat_map(|y| scan_line(core::array::from_fn(|x| texel(x as u32, y))));
+        let bytes = b"#?RADIANCE\n\n-Y 8 +X 16\n".iter().copied().chain(rows);
+        std::fs::write(&path, bytes.collect::<Vec<u8>>()).expect("written");
     } else {
-        ImageFormat::OpenExr
-    };
-    image::DynamicImage::ImageRgb32F(map)
-        .save_with_format(&path, format)
-        .expect("written");
+        write_rgb_file(&path, 16, 8, |x, y| texel(x as u32, y as u32).into()).expect("written");
+    }
     path
+}
+
+/// Returns a scan line of Radiance HDR, each of whose components is one stretch of literal bytes.
+fn scan_line(pixels: [[f32; 3]; 16]) -> Vec<u8> {
+    // The largest channel has a mantissa from 128 to 255.
+    let exponents = pixels.map(|rgb| rgb.into_iter().fold(0.0, f32::max).log2().floor() as i32 + 1);
+    let mut line = vec![2, 2, 0, 16];
+    for channel in 0..3 {
+        line.push(16);
+        line.extend((0..16).map(|x| (pixels[x][channel] * 2_f32.powi(8 - exponents[x])) as u8));
+    }
+    line.push(16);
+    line.extend(exponents.map(|exponent| (exponent + 128) as u8));
+    line
 }
 
 #[test]
@@ -73,10 +87,7 @@ fn content_decides_and_alpha_is_ignored() {
         [16, 8]
     );
     let path = dir.path().join("alpha.exr");
-    let map = Rgba32FImage::from_fn(4, 2, |_, _| image::Rgba([1.0, 2.0, 3.0, 0.25]));
-    image::DynamicImage::ImageRgba32F(map)
-        .save_with_format(&path, ImageFormat::OpenExr)
-        .expect("written");
+    write_rgba_file(&path, 4, 2, |_, _| (1.0, 2.0, 3.0, 0.25)).expect("written");
     assert_eq!(
         Environment::load(&path).expect("alpha").radiance(DVec3::X),
         [1.0, 2.0, 3.0]
@@ -85,7 +96,6 @@ fn content_decides_and_alpha_is_ignored() {
 
 #[test]
 fn luminance_alone_is_a_grey_map() {
-    use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage as _};
     let dir = directory();
     let path = dir.path().join("grey.exr");
     let luminance = |at: Vec2<usize>| (1.0 + at.x() as f32 + 10.0 * at.y() as f32,);
@@ -110,16 +120,11 @@ fn luminance_alone_is_a_grey_map() {
 fn bad_pixels_of_a_file_are_counted() {
     let dir = directory();
     let path = dir.path().join("bad.exr");
-    let map = Rgb32FImage::from_fn(4, 2, |x, _| {
-        image::Rgb(if x == 0 {
-            [f32::NAN, -1.0, f32::INFINITY]
-        } else {
-            [1.0; 3]
-        })
-    });
-    image::DynamicImage::ImageRgb32F(map)
-        .save_with_format(&path, ImageFormat::OpenExr)
-        .expect("written");
+    let pixel = |x, _| match x {
+        0 => (f32::NAN, -1.0, f32::INFINITY),
+        _ => (1.0, 1.0, 1.0),
+    };
+    write_rgb_file(&path, 4, 2, pixel).expect("written");
     assert_eq!(
         Environment::load(&path).expect("repaired").repairs(),
         PixelRepairs {

@@ -2,8 +2,8 @@
 
 use super::{CELLS, Run, assert_refused, lend, merge, reference};
 use crate::cli::{command, run};
+use exr::prelude::write_rgb_file;
 use hairis_study::study::output::Study;
-use image::{ImageFormat, Rgb32FImage};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,12 +11,9 @@ use std::process::Stdio;
 use tempfile::TempDir;
 
 /// Writes an `OpenEXR` map of one colour.
-fn map(dir: &Path, [width, height]: [u32; 2], pixel: [f32; 3]) -> PathBuf {
+fn map(dir: &Path, [width, height]: [usize; 2], pixel: [f32; 3]) -> PathBuf {
     let path = dir.join("map.exr");
-    let map = Rgb32FImage::from_pixel(width, height, image::Rgb(pixel));
-    image::DynamicImage::ImageRgb32F(map)
-        .save_with_format(&path, ImageFormat::OpenExr)
-        .unwrap();
+    write_rgb_file(&path, width, height, |_, _| pixel.into()).unwrap();
     path
 }
 
