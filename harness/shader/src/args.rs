@@ -34,7 +34,8 @@ pub struct Shader {
     /// Print the gradients of `material`, `eval` and `eval_hit` as well
     #[arg(long)]
     pub gradient: bool,
-    /// Add the materials of this file, JSON as `hairis eval` reads, as functions named after it
+    /// Add the materials of this file, JSON as `hairis eval` reads, as functions named after it: letters a to z, digits, and one `_`, `-`, `.`
+    /// or space between words
     #[arg(long, value_name = "FILE")]
     pub material: Option<PathBuf>,
     /// Scale every material so that it returns no more light than it receives

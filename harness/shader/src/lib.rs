@@ -11,7 +11,7 @@ use hairis_materials::MaterialSpec;
 use hairis_materials::material::find_model;
 use hairis_program::error::Error;
 use hairis_program::program::print;
-use hairis_shaders::{Call, Function, Language, Program, Target, numbers};
+use hairis_shaders::{Call, Function, Language, Program, Target, check_name, numbers};
 use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
 use std::fs;
 use std::path::Path;
@@ -38,30 +38,25 @@ pub fn run(flags: &Shader) -> Result<(), Error> {
     print(text)
 }
 
-/// Reads the materials of a file, each with the name of its function.
+/// Reads the materials of a file, each with the name of its function: that of the file, in lower case and with underscores for separators.
 fn read(file: &Path) -> Result<Vec<(String, MaterialSpec)>, Error> {
     let refuse =
         |problem: String| Error::Usage(format!("--material {}: {problem}", file.display()));
     let text = fs::read_to_string(file).map_err(|error| refuse(error.to_string()))?;
     let materials = MaterialSpec::parse_all(&text).map_err(refuse)?;
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
-    let word = |c: char| {
-        if c.is_ascii_alphanumeric() {
-            c.to_ascii_lowercase()
-        } else {
-            '_'
-        }
-    };
-    let stem: String = stem.chars().map(word).collect();
+    let stem = stem.replace([' ', '-', '.'], "_").to_ascii_lowercase();
     let is_single = materials.len() == 1;
-    let name = |place: usize| {
-        if is_single {
+    let named = |(place, material): (usize, MaterialSpec)| {
+        let name = if is_single {
             stem.clone()
         } else {
             format!("{stem}_{place}")
-        }
+        };
+        check_name(&name).map_err(|problem| refuse(format!("{problem}; rename the file")))?;
+        Ok((name, material))
     };
-    Ok((1..).map(name).zip(materials).collect())
+    (1..).zip(materials).map(named).collect()
 }
 
 /// Returns the entry of the registry that the flags and the materials name.

@@ -184,6 +184,78 @@ fn names_of_files_that_are_taken_are_refused() {
     assert!(free.contains("hairis_gaussian_material_gradient(void)"));
 }
 
+/// A name that is no identifier in some language is rejected for all of them, and never becomes the name of another file.
+#[test]
+fn names_of_files_that_are_no_identifiers_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = dir.path().join(name);
+        fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let (one, two) = (good().to_string(), format!("{0}\n{0}", good()));
+    let call = ["--call", "material"];
+    for stem in [
+        "my__hair",
+        "_hair",
+        "hair_",
+        "my - hair",
+        "\u{8336}\u{8272}",
+        "\u{9ed2}\u{8272}",
+        "\u{e9}b\u{e8}ne",
+        "\u{ff21}",
+        "\u{212a}",
+        "red!",
+        "red\n",
+        "a+b",
+        "__",
+        "-",
+        " ",
+        ".hidden",
+    ] {
+        for text in [&one, &two] {
+            let file = write(&format!("{stem}.json"), text);
+            for target in ["c", "glsl", "wgsl"] {
+                let error =
+                    refused(&[&["--material", &file, "--target", target], &call[..]].concat());
+                assert!(
+                    error.contains("--material")
+                        && error.contains("name must be words")
+                        && error.contains("rename the file"),
+                    "{error}"
+                );
+            }
+        }
+    }
+    for (stem, function) in [
+        ("My hair", "my_hair"),
+        ("hair-2.final", "hair_2_final"),
+        ("2", "2"),
+    ] {
+        let file = write(&format!("{stem}.json"), &one);
+        let text = print(&[&["--material", &file, "--target", "glsl"], &call[..]].concat());
+        assert!(
+            text.contains(&format!("hairis_gaussian_material_{function}()")),
+            "{stem}"
+        );
+    }
+    let longest = "a".repeat(255);
+    print(
+        &[
+            &["--material", &write(&longest, &one), "--target", "c"],
+            &call[..],
+        ]
+        .concat(),
+    );
+    refused(
+        &[
+            &["--material", &write(&longest, &two), "--target", "c"],
+            &call[..],
+        ]
+        .concat(),
+    );
+}
+
 #[test]
 fn outputs_that_are_closed_or_full_are_no_panic() {
     let dir = tempfile::tempdir().unwrap();

@@ -26,6 +26,7 @@ mod graph;
 #[cfg(any(doc, doctest))]
 pub mod guide;
 mod material;
+mod name;
 mod print;
 mod program;
 mod record;
@@ -37,6 +38,7 @@ pub use function::{Argument, Function};
 pub use graph::{Graph, Kind, Node, Origin, Rounding};
 pub use hairis::simd::trace::Target;
 pub use material::parameters;
+pub use name::check_name;
 pub use print::{Language, driver, print};
 pub use program::Program;
 #[doc(hidden)]

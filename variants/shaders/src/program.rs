@@ -4,6 +4,7 @@ use crate::call::Call;
 use crate::function::{Argument, Function};
 use crate::graph::{Graph, Lane, input, record};
 use crate::material::{material, parameters, params};
+use crate::name::check_name;
 use crate::record::{Field, Record, Shape, numbers};
 use hairis::Eval;
 use hairis::Hit;
@@ -64,9 +65,14 @@ impl Program {
         id.visit(Trace(target))
     }
 
-    /// Traces any model, under a name that is an identifier in C. The program has neither [`Call::Material`] nor presets.
+    /// Traces any model under a name that [`check_name`] accepts. The program has neither [`Call::Material`] nor presets.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the name is not accepted.
     #[must_use]
     pub fn trace<M: Model>(name: &str, target: Target) -> Self {
+        require_name(name);
         let (_, (material, prepared)) = record(target, || {
             let next = &mut 0;
             let material = lanes::<M::Material<Lane>>(next);
@@ -156,13 +162,14 @@ impl Program {
         &self.materials
     }
 
-    /// Adds a material under a name that is an identifier in C, given by its numbers in the order of [`material`](Self::material). A
+    /// Adds a material under a name that [`check_name`] accepts, given by its numbers in the order of [`material`](Self::material). A
     /// material that already has this name is replaced.
     ///
     /// # Panics
     ///
-    /// Panics if the count of the numbers differs from that of a material.
+    /// Panics if the name is not accepted, or if the count of the numbers differs from that of a material.
     pub fn add_material(&mut self, name: &str, numbers: &[f32]) {
+        require_name(name);
         assert_eq!(numbers.len(), self.material.len(), "numbers of a material");
         let name = format!("material_{name}");
         self.materials.retain(|known| known.name() != name);
@@ -181,6 +188,13 @@ impl Program {
                 (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
             })
         })
+    }
+}
+
+/// Panics with the sentence of [`check_name`] if a name is not accepted.
+fn require_name(name: &str) {
+    if let Err(problem) = check_name(name) {
+        panic!("{problem}");
     }
 }
 

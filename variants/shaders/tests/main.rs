@@ -6,6 +6,7 @@ mod cuda;
 mod gradients;
 mod languages;
 mod material;
+mod names;
 mod operations;
 mod records;
 mod support;
