@@ -52,10 +52,9 @@ pub unsafe extern "C" fn hairis_params_set_artist(
     };
     let has_controls = id.fields() == <HairParams as Parameters>::FIELDS;
     let (Some(from), true) = (from, has_controls) else {
-        let message = &format_args!(
-            "the model must be gaussian or cauchy, and from not NULL; got {}",
-            id.name()
-        );
+        let got = if has_controls { "NULL" } else { id.name() };
+        let message =
+            &format_args!("the model must be gaussian or cauchy, and from not NULL; got {got}");
         // SAFETY: the caller's promise.
         return unsafe { refuse(error, ARGUMENT, &Fault::of("model"), message) };
     };

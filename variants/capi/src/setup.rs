@@ -203,7 +203,7 @@ pub unsafe extern "C" fn hairis_params_init(
         return refuse(
             NAME,
             "model",
-            &format_args!("model must be one of {names}, got \"{name}\""),
+            &format_args!("model must be one of {names}, got {name:?}"),
         );
     };
     let Some(id) = ModelId::find(name, word) else {
@@ -217,12 +217,12 @@ pub unsafe extern "C" fn hairis_params_init(
             Some(_) => refuse(
                 NAME,
                 field,
-                &format_args!("{field} must be one of {words}, got \"{word}\""),
+                &format_args!("{field} must be one of {words}, got {word:?}"),
             ),
             None => refuse(
                 NAME,
                 field,
-                &format_args!("choice must be NULL for {name}, got \"{word}\""),
+                &format_args!("choice must be NULL for {name}, got {word:?}"),
             ),
         };
     };
@@ -241,7 +241,7 @@ pub unsafe extern "C" fn hairis_params_init(
         return refuse(
             NAME,
             "preset",
-            &format_args!("preset must be one of {names}, got \"{preset}\""),
+            &format_args!("preset must be one of {names}, got {preset:?}"),
         );
     };
     // SAFETY: the caller's promise.
@@ -249,11 +249,12 @@ pub unsafe extern "C" fn hairis_params_init(
     OK
 }
 
-/// Sets a field by calling `set`, and writes the parameters unless `set` returns an error.
+/// Sets a field to the value `got` by calling `set`, and writes the parameters unless `set` returns an error.
 unsafe fn set(
     params: *mut Params,
     field: *const c_char,
     error: *mut Error,
+    got: &dyn core::fmt::Display,
     set: impl Fn(&mut Values, &str) -> Result<(), FieldError>,
 ) -> i32 {
     // SAFETY: the caller's promise.
@@ -276,19 +277,23 @@ unsafe fn set(
             let names = List(id.fields().iter().map(|field| field.name));
             refuse(
                 NAME,
-                &format_args!("field must be one of {names}, got \"{name}\""),
+                &format_args!("field must be one of {names}, got {name:?}"),
             )
         }
-        Err(FieldError::Count(width)) => {
-            refuse(VALUE, &format_args!("{name} must be {width} numbers"))
-        }
+        Err(FieldError::Count(width)) => refuse(
+            VALUE,
+            &format_args!("{name} must be {width} numbers, got {got}"),
+        ),
         Err(FieldError::Word([])) => refuse(
             VALUE,
-            &format_args!("{name} must be numbers: use hairis_params_set"),
+            &format_args!("{name} must be numbers, got {got}: use hairis_params_set"),
         ),
         Err(FieldError::Word(words)) => {
             let words = List(words.iter().copied());
-            refuse(NAME, &format_args!("{name} must be one of {words}"))
+            refuse(
+                NAME,
+                &format_args!("{name} must be one of {words}, got {got}"),
+            )
         }
         Err(error) => refuse(VALUE, &format_args!("{name}: {error}")),
     }
@@ -304,24 +309,27 @@ pub unsafe extern "C" fn hairis_params_set(
     error: *mut Error,
 ) -> i32 {
     if numbers.is_null() || count > NUMBERS {
-        let message = &format_args!("numbers must be at most {NUMBERS} and not NULL, got {count}");
+        let got: &dyn core::fmt::Display = if numbers.is_null() { &"NULL" } else { &count };
+        let message = &format_args!("numbers must be at most {NUMBERS} and not NULL, got {got}");
         // SAFETY: the caller's promise.
         return unsafe { refuse(error, ARGUMENT, &Fault::of("numbers"), message) };
     }
     // SAFETY: the caller's promise.
     unsafe {
         let numbers = core::slice::from_raw_parts(numbers, count);
-        set(params, field, error, |values, name| {
-            match values.index(name) {
-                Some(index) if matches!(values.fields()[index].kind, Kind::Word(_)) => {
-                    let Kind::Word(words) = values.fields()[index].kind else {
-                        return Err(FieldError::Name);
-                    };
-                    Err(FieldError::Word(words))
+        set(
+            params,
+            field,
+            error,
+            &format_args!("{count} numbers"),
+            |values, name| {
+                let index = values.index(name).ok_or(FieldError::Name)?;
+                match values.fields()[index].kind {
+                    Kind::Word(words) => Err(FieldError::Word(words)),
+                    _ => values.set_at(index, numbers),
                 }
-                _ => values.set(name, numbers),
-            }
-        })
+            },
+        )
     }
 }
 
@@ -336,9 +344,13 @@ pub unsafe extern "C" fn hairis_params_set_word(
     // SAFETY: the caller's promise.
     unsafe {
         let word = string(word).unwrap_or_default();
-        set(params, field, error, |values, name| {
-            values.set_word(name, word)
-        })
+        set(
+            params,
+            field,
+            error,
+            &format_args!("{word:?}"),
+            |values, name| values.set_word(name, word),
+        )
     }
 }
 
@@ -384,7 +396,8 @@ pub unsafe extern "C" fn hairis_material_init(
         Err(code) => return code,
     };
     if to.is_null() || !matches!(energy, ENERGY_RAW | ENERGY_CONSERVING | ENERGY_SCALED) {
-        let message = &format_args!("energy must be 0, 1 or 2, and to not NULL; got {energy}");
+        let got: &dyn core::fmt::Display = if to.is_null() { &"NULL" } else { &energy };
+        let message = &format_args!("energy must be 0, 1 or 2, and to not NULL; got {got}");
         // SAFETY: the caller's promise.
         return unsafe { refuse(error, ARGUMENT, &Fault::of("energy"), message) };
     }

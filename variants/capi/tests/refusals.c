@@ -56,12 +56,15 @@ static void setup(void) {
   const float numbers[40] = {0};
   refused(hairis_params_set(&params, "beta", numbers, 1, &error), HAIRIS_NAME, "beta", -1, "field must be one of beta_m, beta_n, ");
   refused(hairis_params_set(&params, NULL, numbers, 1, &error), HAIRIS_NAME, "", -1, "field must be one of ");
-  refused(hairis_params_set(&params, "sigma_a", numbers, 2, &error), HAIRIS_VALUE, "sigma_a", -1, "sigma_a must be 3 numbers");
-  refused(hairis_params_set(&params, "sigma_a", NULL, 3, &error), HAIRIS_ARGUMENT, "numbers", -1, "not NULL");
-  refused(hairis_params_set(&params, "sigma_a", numbers, 40, &error), HAIRIS_ARGUMENT, "numbers", -1, "at most 32");
-  refused(hairis_params_set(&params, "shifts", numbers, 1, &error), HAIRIS_NAME, "shifts", -1, "shifts must be one of d-eon, small-angle");
-  refused(hairis_params_set_word(&params, "shifts", "none", &error), HAIRIS_NAME, "shifts", -1, "shifts must be one of d-eon, small-angle");
-  refused(hairis_params_set_word(&params, "eta", "glass", &error), HAIRIS_VALUE, "eta", -1, "use hairis_params_set");
+  refused(hairis_params_set(&params, "sigma_a", numbers, 2, &error), HAIRIS_VALUE, "sigma_a", -1, "sigma_a must be 3 numbers, got 2 numbers");
+  refused(hairis_params_set(&params, "sigma_a", NULL, 3, &error), HAIRIS_ARGUMENT, "numbers", -1, "not NULL, got NULL");
+  refused(hairis_params_set(&params, "sigma_a", numbers, 40, &error), HAIRIS_ARGUMENT, "numbers", -1, "at most 32 and not NULL, got 40");
+  refused(hairis_params_set(&params, "shifts", numbers, 1, &error), HAIRIS_NAME, "shifts", -1,
+          "shifts must be one of d-eon, small-angle, got 1 numbers");
+  refused(hairis_params_set_word(&params, "shifts", "no\nne", &error), HAIRIS_NAME, "shifts", -1,
+          "shifts must be one of d-eon, small-angle, got \"no\\nne\"");
+  refused(hairis_params_set_word(&params, "eta", "glass", &error), HAIRIS_VALUE, "eta", -1,
+          "eta must be numbers, got \"glass\": use hairis_params_set");
   refused(hairis_params_set_word(&params, "shifts", NULL, &error), HAIRIS_NAME, "shifts", -1, "one of");
   hairis_artist artist;
   hairis_artist_init(&artist);
@@ -73,7 +76,7 @@ static void setup(void) {
   artist.secondary.width_deg = 400;
   refused(hairis_params_set_artist(&params, &artist, &error), HAIRIS_VALUE, "secondary.width_deg", -1,
           "secondary.width_deg must be an angle in [0.01, 180] degrees, got 400");
-  refused(hairis_params_set_artist(&params, NULL, &error), HAIRIS_ARGUMENT, "model", -1, "not NULL");
+  refused(hairis_params_set_artist(&params, NULL, &error), HAIRIS_ARGUMENT, "model", -1, "not NULL; got NULL");
   want(memcmp(&params, &before, sizeof params) == 0, "parameters change where an artist's control is refused");
 
   hairis_material *material = (hairis_material *)(void *)guarded;
@@ -84,8 +87,8 @@ static void setup(void) {
   none.model = 1000, none.given = 1;
   refused(hairis_material_init(material, &none, HAIRIS_ENERGY_RAW, &error), HAIRIS_ARGUMENT, "params", -1, "hairis_params_init");
   refused(hairis_material_init(material, NULL, HAIRIS_ENERGY_RAW, &error), HAIRIS_ARGUMENT, "params", -1, "hairis_params_init");
-  refused(hairis_material_init(material, &params, 7, &error), HAIRIS_ARGUMENT, "energy", -1, "energy must be 0, 1 or 2");
-  refused(hairis_material_init(NULL, &params, 1, &error), HAIRIS_ARGUMENT, "energy", -1, "not NULL");
+  refused(hairis_material_init(material, &params, 7, &error), HAIRIS_ARGUMENT, "energy", -1, "energy must be 0, 1 or 2, and to not NULL; got 7");
+  refused(hairis_material_init(NULL, &params, 1, &error), HAIRIS_ARGUMENT, "energy", -1, "not NULL; got NULL");
   const float widths[3] = {0.1f, 0, 0.2f}, red[3] = {0, 1, -INFINITY};
   hairis_params_set(&params, "beta", widths, 3, &error);
   refused(hairis_material_init(material, &params, 1, &error), HAIRIS_VALUE, "beta", 1, "beta[1] must be a width in [1e-4, pi] rad, got 0");

@@ -1,11 +1,13 @@
 //! Columns of NumPy arrays, which are borrowed and never copied.
 
-use core::fmt::Display;
+use crate::values::wrong;
+use core::fmt::{self, Display, Formatter};
+use core::ops::Range;
 use core::ptr;
 use hairis_capi::layout::{Evals, Samples};
 use numpy::{
-    PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
-    PyUntypedArrayMethods,
+    BorrowError, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn,
+    PyReadwriteArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -73,28 +75,29 @@ pub(crate) fn samples(outputs: &Outputs<'_, 5>) -> Samples {
     }
 }
 
+/// Describes a value in exceptions: an array by its numbers, anything else by its type.
+pub(crate) fn description(of: &Bound<'_, PyAny>) -> String {
+    let Ok(array) = of.cast::<PyUntypedArray>() else {
+        return of.get_type().to_string();
+    };
+    let (dtype, rank) = (array.dtype(), array.ndim());
+    let lengths: Vec<_> = array.shape().iter().map(usize::to_string).collect();
+    let comma = if rank == 1 { "," } else { "" };
+    format!("{dtype} of shape ({}{comma})", lengths.join(", "))
+}
+
 /// Makes the exception for an array of another type, shape or layout than required.
 fn refused(name: &dyn Display, rows: usize, n: Option<usize>, got: &Bound<'_, PyAny>) -> PyErr {
-    let flag = |name| -> PyResult<bool> { got.getattr("flags")?.getattr(name)?.extract() };
-    let what = match (
-        got.getattr("dtype"),
-        got.getattr("shape"),
-        flag("c_contiguous"),
-        flag("aligned"),
-    ) {
-        (Ok(dtype), Ok(shape), Ok(is_contiguous), Ok(is_aligned)) => {
-            let layout = match (is_contiguous, is_aligned) {
-                (false, _) => ", not C-contiguous",
-                (true, false) => ", not aligned",
-                (true, true) => "",
-            };
-            format!("{dtype} of shape {shape}{layout}")
-        }
-        _ => got.get_type().to_string(),
+    let array = got.cast::<PyArrayDyn<f32>>().ok();
+    let layout = match array {
+        Some(array) if !array.is_c_contiguous() => ", not C-contiguous",
+        Some(array) if !array.data().is_aligned() => ", not aligned",
+        _ => "",
     };
     PyTypeError::new_err(format!(
-        "{name} must be float32 of shape {}, C-contiguous and aligned; got {what}",
-        shape(rows, n)
+        "{name} must be float32 of shape {}, C-contiguous and aligned; got {}{layout}",
+        shape(rows, n),
+        description(got)
     ))
 }
 
@@ -126,8 +129,22 @@ fn rows_of(start: *const f32, n: usize) -> [*const f32; 3] {
     [start, start.wrapping_add(n), start.wrapping_add(2 * n)]
 }
 
+/// Returns the addresses of a contiguous array.
+fn addresses(array: &Bound<'_, PyArrayDyn<f32>>) -> Range<usize> {
+    let start = array.data().addr();
+    start..start + size_of::<f32>() * array.len()
+}
+
+/// Makes the exception for an array that a call of another thread writes, or that this call is to write and the other reads.
+fn in_use(name: &dyn Display) -> PyErr {
+    PyValueError::new_err(format!(
+        "{name} is in use by another call; give each thread arrays of its own to write"
+    ))
+}
+
 /// Column that a call reads.
 pub(crate) struct Input<'py> {
+    name: &'static str,
     array: PyReadonlyArrayDyn<'py, f32>,
     pub(crate) n: usize,
 }
@@ -135,17 +152,15 @@ pub(crate) struct Input<'py> {
 impl<'py> Input<'py> {
     /// Borrows a column of `rows` rows, which must have `n` numbers each if `n` is known.
     pub(crate) fn new(
-        name: &str,
+        name: &'static str,
         any: &Bound<'py, PyAny>,
         rows: usize,
         n: Option<usize>,
     ) -> PyResult<Self> {
         let array = cast(&name, rows, n, any)?;
         let n = array.shape().last().copied().unwrap_or(0);
-        let array = array
-            .try_readonly()
-            .map_err(|error| PyValueError::new_err(format!("{name}: {error}")))?;
-        Ok(Self { array, n })
+        let array = array.try_readonly().map_err(|_| in_use(&name))?;
+        Ok(Self { name, array, n })
     }
 
     pub(crate) fn rows(&self) -> [*const f32; 3] {
@@ -165,6 +180,15 @@ impl<'py> Input<'py> {
     }
 }
 
+/// Column of `out` in exceptions.
+struct Item(&'static str);
+
+impl Display for Item {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "out[\"{}\"]", self.0)
+    }
+}
+
 /// Columns that a call writes.
 pub(crate) struct Outputs<'py, const N: usize> {
     /// Columns by name, for the caller.
@@ -176,15 +200,25 @@ pub(crate) struct Outputs<'py, const N: usize> {
 }
 
 impl<'py, const N: usize> Outputs<'py, N> {
-    /// Makes new columns of every name, or borrows the columns of `out`.
+    /// Makes new columns of every name, or borrows the columns of `out`. They have as many numbers per row as the inputs, of which there
+    /// is at least one, and share no memory with them.
     pub(crate) fn new(
         py: Python<'py>,
-        out: Option<&Bound<'py, PyDict>>,
+        out: Option<&Bound<'py, PyAny>>,
         names: &Columns<N>,
-        n: usize,
+        inputs: &[&Input<'py>],
     ) -> PyResult<Self> {
+        let n = inputs[0].n;
         let (columns, keys) = (&names.columns, names.keys(py));
-        let dict = out.cloned().unwrap_or_else(|| PyDict::new(py));
+        let dict = match out {
+            None => PyDict::new(py),
+            Some(out) => {
+                let dict = out
+                    .cast::<PyDict>()
+                    .map_err(|_| wrong(&"out", "a dict", out))?;
+                dict.clone()
+            }
+        };
         if out.is_none() {
             for ((_, rows), key) in columns.iter().zip(keys) {
                 if *rows == 3 {
@@ -201,24 +235,42 @@ impl<'py, const N: usize> Outputs<'py, N> {
         // Strings of all keys would take a sixth of a call on one direction.
         if given.iter().flatten().count() < dict.len() {
             for key in dict.keys() {
-                let key: String = key.extract()?;
-                if !columns.iter().any(|(name, _)| *name == key) {
+                if !keys.iter().any(|known| key.eq(known).unwrap_or(false)) {
                     let names = columns.map(|(name, _)| name).join(", ");
+                    let got = match key.cast::<PyString>() {
+                        Ok(key) => format!("{:?}", key.to_string_lossy()),
+                        Err(_) => key.repr()?.to_string(),
+                    };
                     return Err(PyValueError::new_err(format!(
-                        "out must have some of {names}, got \"{key}\""
+                        "out must have some of {names}, got {got}"
                     )));
                 }
             }
         }
         let (mut borrowed, mut all) = ([const { None }; N], [[ptr::null_mut(); 3]; N]);
-        for (i, (name, rows)) in columns.iter().enumerate() {
+        let names = columns.map(|(name, _)| Item(name));
+        let taken = inputs.iter();
+        let taken = taken.map(|input| (&input.name as &dyn Display, addresses(&input.array)));
+        let mut taken: Vec<_> = taken.collect();
+        for (i, name) in names.iter().enumerate() {
             let Some(any) = &given[i] else { continue };
-            let array = cast(&format_args!("out[\"{name}\"]"), *rows, Some(n), any)?;
-            let array = array.try_readwrite().map_err(|_| {
-                PyValueError::new_err(format!(
-                    "out[\"{name}\"] must be writeable and share no memory with another column"
-                ))
+            let array = cast(name, columns[i].1, Some(n), any)?;
+            let here = addresses(array);
+            let overlaps = |(_, other): &&(&dyn Display, Range<usize>)| {
+                here.start < other.end && other.start < here.end
+            };
+            if let Some((other, _)) = taken.iter().find(overlaps) {
+                return Err(PyValueError::new_err(format!(
+                    "{name} must share no memory with {other}"
+                )));
+            }
+            let array = array.try_readwrite().map_err(|error| match error {
+                BorrowError::NotWriteable => {
+                    PyValueError::new_err(format!("{name} must be writeable"))
+                }
+                _ => in_use(name),
             })?;
+            taken.push((name, here));
             all[i] = rows_of(array.data().cast_const(), n).map(<*const f32>::cast_mut);
             borrowed[i] = Some(array);
         }

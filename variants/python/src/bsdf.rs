@@ -3,6 +3,7 @@
 use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, evals, samples};
 use crate::fields::double;
 use crate::material::Material;
+use crate::values::{items, vector, word};
 use hairis_capi::layout::{BSDF_SIZE, LobeResult, RawBsdf};
 use hairis_capi::{columns, points};
 use pyo3::exceptions::PyValueError;
@@ -99,7 +100,8 @@ impl Bsdf {
     /// >>> value, color, pdf = bsdf.lobes((0, 0, 1))["diffuse"]
     /// >>> len(color)
     /// 3
-    fn lobes<'py>(&self, py: Python<'py>, wi: [f32; 3]) -> PyResult<Bound<'py, PyDict>> {
+    fn lobes<'py>(&self, py: Python<'py>, wi: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+        let wi = vector("wi", wi)?;
         let mut lobes = [LobeResult::default(); 4];
         // SAFETY: the BSDF is prepared.
         unsafe { points::hairis_lobes(&raw const self.raw, wi[0], wi[1], wi[2], &raw mut lobes) };
@@ -118,14 +120,15 @@ impl Bsdf {
     /// >>> bsdf = hairis.Material("gaussian").prepare((0, 1, 0)).with_lobes(["r"])
     /// >>> bsdf.albedo()["tt"]
     /// (0.0, 0.0, 0.0)
-    fn with_lobes(&self, names: Vec<String>) -> PyResult<Self> {
+    fn with_lobes(&self, names: &Bound<'_, PyAny>) -> PyResult<Self> {
         let known = self.names();
         let mut lobes = 0;
-        for name in &names {
-            let Some(slot) = known.iter().position(|one| one == name) else {
+        for (i, name) in items("lobes", "a list of names", names)?.iter().enumerate() {
+            let name = word(&format_args!("lobes[{i}]"), name)?;
+            let Some(slot) = known.iter().position(|one| *one == name) else {
                 let known = known.join(", ");
                 return Err(PyValueError::new_err(format!(
-                    "lobes must be some of {known}, got \"{name}\""
+                    "lobes must be some of {known}, got {name:?}"
                 )));
             };
             lobes |= 1 << slot;
@@ -170,11 +173,11 @@ impl Bsdf {
         &self,
         py: Python<'py>,
         wi: &Bound<'py, PyAny>,
-        out: Option<&Bound<'py, PyDict>>,
+        out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let wi = Input::new("wi", wi, 3, None)?;
         let n = wi.n;
-        let outputs = Outputs::new(py, out, &EVALS, n)?;
+        let outputs = Outputs::new(py, out, &EVALS, &[&wi])?;
         let (raw, rows, to) = (&raw const self.raw, wi.rows(), evals(&outputs));
         // SAFETY: the arrays have n numbers in each row, and are borrowed.
         Detached(move || unsafe {
@@ -210,11 +213,11 @@ impl Bsdf {
         &self,
         py: Python<'py>,
         xi: &Bound<'py, PyAny>,
-        out: Option<&Bound<'py, PyDict>>,
+        out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let xi = Input::new("xi", xi, 3, None)?;
         let n = xi.n;
-        let outputs = Outputs::new(py, out, &SAMPLES, n)?;
+        let outputs = Outputs::new(py, out, &SAMPLES, &[&xi])?;
         let (raw, rows, to) = (&raw const self.raw, xi.rows(), samples(&outputs));
         // SAFETY: the arrays have n numbers in each row, and are borrowed.
         Detached(move || unsafe {

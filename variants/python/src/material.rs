@@ -4,7 +4,7 @@ use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, evals, samples};
 use crate::bsdf::Bsdf;
 use crate::fields::{Value, check, double, fields_of, no_error};
 use crate::gradients::{self, GRADIENTS, Inputs};
-use crate::values::{energy_of, params_of, written};
+use crate::values::{CONSERVING, energy_of, number, params_of, vector, word, written};
 use core::fmt::Write;
 use hairis_capi::layout::{Hits, MATERIAL_SIZE, Params, RawMaterial};
 use hairis_capi::{hits, setup};
@@ -54,6 +54,11 @@ pub(crate) struct Material {
 
 /// Columns of hits that a call reads: `wo`, directions or uniform numbers, and `h`.
 type Columns<'py> = (Input<'py>, Input<'py>, Option<Input<'py>>);
+
+/// Returns all columns of hits.
+fn all<'a, 'py>((wo, third, h): &'a Columns<'py>) -> Vec<&'a Input<'py>> {
+    [wo, third].into_iter().chain(h).collect()
+}
 
 /// Function of the C interface on hits, which writes columns `T`.
 type Call<T> = unsafe extern "C" fn(
@@ -116,7 +121,7 @@ impl Material {
     /// Reads the columns of hits: `wo`, `h` and the third, all of one length.
     fn inputs<'py>(
         wo: &Bound<'py, PyAny>,
-        third: (&str, &Bound<'py, PyAny>),
+        third: (&'static str, &Bound<'py, PyAny>),
         h: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Columns<'py>> {
         let wo = Input::new("wo", wo, 3, None)?;
@@ -124,6 +129,16 @@ impl Material {
         let third = Input::new(third.0, third.1, 3, n)?;
         Ok((wo, third, h.map(|h| Input::new("h", h, 1, n)).transpose()?))
     }
+}
+
+/// Reads the argument `model`.
+fn model_of(value: &Bound<'_, PyAny>) -> PyResult<String> {
+    word(&"model", value)
+}
+
+/// Reads the argument `h`.
+fn offset_of(value: &Bound<'_, PyAny>) -> PyResult<f32> {
+    number(&"h", value)
 }
 
 /// Makes a dict of values by name, each a float, a tuple of floats or a word.
@@ -145,15 +160,18 @@ fn dict_of(
 #[pymethods]
 impl Material {
     #[new]
-    #[pyo3(signature = (model="gaussian", preset=None, *, energy="conserving", **fields))]
+    #[pyo3(
+        signature = (model="gaussian".to_owned(), preset=None, *, energy=CONSERVING, **fields),
+        text_signature = "(model='gaussian', preset=None, *, energy='conserving', **fields)"
+    )]
     fn new(
-        model: &str,
-        preset: Option<&str>,
-        energy: &str,
+        #[pyo3(from_py_with = model_of)] model: String,
+        preset: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = energy_of)] energy: (&'static str, u32),
         fields: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let energy = energy_of(energy)?;
-        Self::of(&params_of(model, preset, fields)?, energy)
+        let preset = preset.map(|preset| word(&"preset", preset)).transpose()?;
+        Self::of(&params_of(&model, preset.as_deref(), fields)?, energy)
     }
 
     /// Makes a material from a JSON object of `hairis eval`, which has "model", "params", and the field of its choice. The fields of a
@@ -170,9 +188,13 @@ impl Material {
     /// >>> hairis.Material.from_json(hair.to_json()) == hair
     /// True
     #[staticmethod]
-    #[pyo3(signature = (text, *, energy="conserving"))]
-    fn from_json(text: &str, energy: &str) -> PyResult<Self> {
-        let materials = MaterialSpec::parse_all(text).map_err(PyValueError::new_err)?;
+    #[pyo3(signature = (text, *, energy=CONSERVING), text_signature = "(text, *, energy='conserving')")]
+    fn from_json(
+        text: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = energy_of)] energy: (&'static str, u32),
+    ) -> PyResult<Self> {
+        let text = word(&"text", text)?;
+        let materials = MaterialSpec::parse_all(&text).map_err(PyValueError::new_err)?;
         let [material] = &materials[..] else {
             let count = materials.len();
             return Err(PyValueError::new_err(format!(
@@ -180,7 +202,7 @@ impl Material {
             )));
         };
         let params = setup::params_of(material.model, &material.values);
-        Self::of(&params, energy_of(energy)?)
+        Self::of(&params, energy)
     }
 
     /// Writes the material as a JSON object of `hairis eval`, in one line. The energy is not part of the object.
@@ -263,8 +285,12 @@ impl Material {
     /// >>> sum(lobe[0] for lobe in bsdf.albedo().values()) <= 1.001
     /// True
     #[pyo3(signature = (wo, h=0.0))]
-    fn prepare(slf: Bound<'_, Self>, wo: [f32; 3], h: f32) -> Bsdf {
-        Bsdf::new(slf.unbind(), wo, h)
+    fn prepare(
+        slf: Bound<'_, Self>,
+        wo: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = offset_of)] h: f32,
+    ) -> PyResult<Bsdf> {
+        Ok(Bsdf::new(slf.unbind(), vector("wo", wo)?, h))
     }
 
     /// Evaluates values and densities of N directions, each at a hit of its own.
@@ -297,10 +323,10 @@ impl Material {
         wo: &Bound<'py, PyAny>,
         wi: &Bound<'py, PyAny>,
         h: Option<&Bound<'py, PyAny>>,
-        out: Option<&Bound<'py, PyDict>>,
+        out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let inputs = Self::inputs(wo, ("wi", wi), h)?;
-        let outputs = Outputs::new(py, out, &EVALS, inputs.0.n)?;
+        let outputs = Outputs::new(py, out, &EVALS, &all(&inputs))?;
         self.call(py, &inputs, &evals(&outputs), hits::hairis_eval_hits)?;
         Ok(outputs.dict)
     }
@@ -339,10 +365,10 @@ impl Material {
         wo: &Bound<'py, PyAny>,
         xi: &Bound<'py, PyAny>,
         h: Option<&Bound<'py, PyAny>>,
-        out: Option<&Bound<'py, PyDict>>,
+        out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let inputs = Self::inputs(wo, ("xi", xi), h)?;
-        let outputs = Outputs::new(py, out, &SAMPLES, inputs.0.n)?;
+        let outputs = Outputs::new(py, out, &SAMPLES, &all(&inputs))?;
         self.call(py, &inputs, &samples(&outputs), hits::hairis_sample_hits)?;
         Ok(outputs.dict)
     }
@@ -387,17 +413,19 @@ impl Material {
         wi: &Bound<'py, PyAny>,
         d_value: &Bound<'py, PyAny>,
         h: Option<&Bound<'py, PyAny>>,
-        out: Option<&Bound<'py, PyDict>>,
+        out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
-        let (wo, wi, h) = Self::inputs(wo, ("wi", wi), h)?;
-        let d_value = Input::new("d_value", d_value, 3, Some(wo.n))?;
-        let outputs = Outputs::new(py, out, &GRADIENTS, wo.n)?;
+        let hits = Self::inputs(wo, ("wi", wi), h)?;
+        let d_value = Input::new("d_value", d_value, 3, Some(hits.0.n))?;
+        let read = [&all(&hits)[..], &[&d_value]].concat();
+        let outputs = Outputs::new(py, out, &GRADIENTS, &read)?;
+        let (wo, wi, h) = &hits;
         let (id, values) = (self.id, &self.values);
         let (inputs, is_raw) = (
             Inputs {
-                wo: &wo,
+                wo,
                 h: h.as_ref(),
-                wi: &wi,
+                wi,
                 d_value: &d_value,
             },
             self.energy == "raw",

@@ -1,32 +1,35 @@
 //! Conversion of parameters and their values from Python to the C interface.
 
+use crate::arrays::description;
 use crate::fields::{Value, check, no_error};
 use core::ffi::CStr;
+use core::fmt::Display;
 use hairis_capi::layout::{ENERGY_CONSERVING, ENERGY_RAW, ENERGY_SCALED, Params};
 use hairis_capi::setup;
 use hairis_variants::{Field, Kind, ModelId};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use numpy::{PyUntypedArray, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict, PyString};
 use std::ffi::CString;
 
-const ENERGIES: [(&str, u32); 3] = [
-    ("raw", ENERGY_RAW),
-    ("conserving", ENERGY_CONSERVING),
-    ("scaled", ENERGY_SCALED),
-];
+/// Energy of materials by default, with its code.
+pub(crate) const CONSERVING: (&str, u32) = ("conserving", ENERGY_CONSERVING);
 
-fn c_string(text: &str) -> PyResult<CString> {
+const ENERGIES: [(&str, u32); 3] = [("raw", ENERGY_RAW), CONSERVING, ("scaled", ENERGY_SCALED)];
+
+fn c_string(name: &str, text: &str) -> PyResult<CString> {
     CString::new(text)
-        .map_err(|_| PyValueError::new_err(format!("names must have no NUL, got {text:?}")))
+        .map_err(|_| PyValueError::new_err(format!("{name} must have no NUL, got {text:?}")))
 }
 
-/// Returns an energy by name, with its code.
-pub(crate) fn energy_of(name: &str) -> PyResult<(&'static str, u32)> {
+/// Reads an energy by name; returns it with its code.
+pub(crate) fn energy_of(value: &Bound<'_, PyAny>) -> PyResult<(&'static str, u32)> {
+    let name = word(&"energy", value)?;
     let found = ENERGIES.iter().find(|(one, _)| *one == name).copied();
     found.ok_or_else(|| {
         PyValueError::new_err(format!(
-            "energy must be one of raw, conserving, scaled, got \"{name}\""
+            "energy must be one of raw, conserving, scaled, got {name:?}"
         ))
     })
 }
@@ -39,12 +42,16 @@ pub(crate) fn params_of(
 ) -> PyResult<Params> {
     let choice = ModelId::find(model, None).and_then(ModelId::choice);
     let choice = choice.map(|(field, _)| field);
-    let word = match (choice, fields) {
-        (Some(choice), Some(fields)) => fields.get_item(choice)?.map(|word| word_of(choice, &word)),
+    let chosen = match (choice, fields) {
+        (Some(choice), Some(fields)) => fields.get_item(choice)?.map(|value| {
+            let word = word(&choice, &value)?;
+            c_string(choice, &word)
+        }),
         _ => None,
     };
-    let word = word.transpose()?;
-    let (model, preset) = (c_string(model)?, preset.map(c_string).transpose()?);
+    let chosen = chosen.transpose()?;
+    let preset = preset.map(|preset| c_string("preset", preset));
+    let (model, preset) = (c_string("model", model)?, preset.transpose()?);
     let pointer = |text: &Option<CString>| text.as_deref().map_or(core::ptr::null(), CStr::as_ptr);
     let mut error = no_error();
     let mut params = Params {
@@ -54,14 +61,14 @@ pub(crate) fn params_of(
     };
     // SAFETY: the arguments are of this call.
     let status = unsafe {
-        let names = (model.as_ptr(), pointer(&word), pointer(&preset));
+        let names = (model.as_ptr(), pointer(&chosen), pointer(&preset));
         setup::hairis_params_init(&raw mut params, names.0, names.1, names.2, &raw mut error)
     };
     check(status, &error)?;
     let known = ModelId::ALL[params.model as usize].fields();
     let mut heads = Vec::new();
     for (name, value) in fields.into_iter().flatten() {
-        let name: String = name.extract()?;
+        let name = word(&"field", &name)?;
         if Some(&*name) == choice {
             continue;
         }
@@ -70,7 +77,7 @@ pub(crate) fn params_of(
             let names: Vec<_> = choice.into_iter().chain(known).collect();
             let names = names.join(", ");
             return Err(PyValueError::new_err(format!(
-                "field must be one of {names}, got \"{name}\""
+                "field must be one of {names}, got {name:?}"
             )));
         };
         let head = field.instead_of.unwrap_or(field.name);
@@ -85,37 +92,107 @@ pub(crate) fn params_of(
     Ok(params)
 }
 
-/// Makes the exception for a value of another type than its field.
-fn wrong(name: &str, what: &str, value: &Bound<'_, PyAny>) -> PyErr {
-    PyTypeError::new_err(format!("{name} must be {what}, got {}", value.get_type()))
+/// Makes the exception for a value of another type than its argument or field.
+pub(crate) fn wrong(name: &dyn Display, what: &str, value: &Bound<'_, PyAny>) -> PyErr {
+    let got = description(value);
+    PyTypeError::new_err(format!("{name} must be {what}, got {got}"))
 }
 
-/// Reads the word that a field is given.
-fn word_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<CString> {
-    let word: String = value.extract().map_err(|_| wrong(name, "a word", value))?;
-    c_string(&word)
+/// Converts an exception that says that a value has another type; others, such as an interrupt, stay as they are.
+fn if_type(error: PyErr, py: Python<'_>, convert: impl FnOnce() -> PyErr) -> PyErr {
+    if error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyValueError>(py) {
+        convert()
+    } else {
+        error
+    }
+}
+
+/// Reads a word. Surrogates, which are in no name, become replacement characters.
+pub(crate) fn word(name: &dyn Display, value: &Bound<'_, PyAny>) -> PyResult<String> {
+    let word = value.cast::<PyString>();
+    let word = word.map_err(|_| wrong(name, "a word", value))?;
+    Ok(word.to_string_lossy().into_owned())
+}
+
+/// Reads a number. NaN and infinity are numbers; a finite one beyond single precision is refused.
+pub(crate) fn number(name: &dyn Display, value: &Bound<'_, PyAny>) -> PyResult<f32> {
+    let too_large = |got: &dyn Display| {
+        let most = f32::MAX;
+        PyValueError::new_err(format!(
+            "{name} must be at most {most:e} in magnitude, got {got}"
+        ))
+    };
+    // NumPy before 2.4 converts an array of one number.
+    let array = value.cast::<PyUntypedArray>();
+    if array.is_ok_and(|array| array.ndim() > 0) {
+        return Err(wrong(name, "a number", value));
+    }
+    match value.extract::<f64>() {
+        Ok(x) if x.is_finite() && (x as f32).is_infinite() => {
+            Err(too_large(&format_args!("{x:e}")))
+        }
+        Ok(x) => Ok(x as f32),
+        Err(error) if error.is_instance_of::<PyOverflowError>(value.py()) => {
+            Err(too_large(&"a larger integer"))
+        }
+        Err(error) => Err(if_type(error, value.py(), || {
+            wrong(name, "a number", value)
+        })),
+    }
+}
+
+/// Reads the items of a sequence that is neither a string nor bytes.
+pub(crate) fn items<'py>(
+    name: &str,
+    what: &str,
+    value: &Bound<'py, PyAny>,
+) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    if value.is_instance_of::<PyBytes>() {
+        return Err(wrong(&name, what, value));
+    }
+    let items = value.extract();
+    items.map_err(|error: PyErr| if_type(error, value.py(), || wrong(&name, what, value)))
+}
+
+/// Reads a sequence of so many numbers.
+pub(crate) fn numbers(name: &str, width: usize, value: &Bound<'_, PyAny>) -> PyResult<Vec<f32>> {
+    let what = format!("{width} numbers");
+    let items = items(name, &what, value)?;
+    if items.len() != width {
+        let got = items.len();
+        return Err(PyValueError::new_err(format!(
+            "{name} must be {what}, got {got}"
+        )));
+    }
+    let items = items.iter().enumerate();
+    items
+        .map(|(i, item)| number(&format_args!("{name}[{i}]"), item))
+        .collect()
+}
+
+/// Reads a vector of three numbers.
+pub(crate) fn vector(name: &str, value: &Bound<'_, PyAny>) -> PyResult<[f32; 3]> {
+    let numbers = numbers(name, 3, value)?;
+    Ok([numbers[0], numbers[1], numbers[2]])
 }
 
 /// Sets a field to a value from Python.
 fn set(params: &mut Params, field: &Field, value: &Bound<'_, PyAny>) -> PyResult<()> {
     let name = field.name;
-    let (c_name, mut error) = (c_string(name)?, no_error());
+    let (c_name, mut error) = (c_string(name, name)?, no_error());
     if let Kind::Word(_) = field.kind {
-        let word = word_of(name, value)?;
+        let word = c_string(name, &word(&name, value)?)?;
         // SAFETY: the arguments are of this call.
         let status = unsafe {
             setup::hairis_params_set_word(params, c_name.as_ptr(), word.as_ptr(), &raw mut error)
         };
         return check(status, &error);
     }
-    let numbers: Vec<f64> = if field.kind == Kind::Number {
-        let number = value.extract();
-        vec![number.map_err(|_| wrong(name, "a number", value))?]
+    let numbers = if field.kind == Kind::Number {
+        vec![number(&name, value)?]
     } else {
-        let what = format!("{} numbers", field.kind.width());
-        value.extract().map_err(|_| wrong(name, &what, value))?
+        numbers(name, field.kind.width(), value)?
     };
-    let numbers: Vec<f32> = numbers.iter().map(|x| *x as f32).collect();
     // SAFETY: the arguments are of this call.
     let status = unsafe {
         let numbers = (numbers.as_ptr(), numbers.len());
