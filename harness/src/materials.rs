@@ -144,9 +144,10 @@ impl NamedMaterial {
         }
     }
 
-    /// Returns a number that materials of one model and the same parameters share.
+    /// Returns a number that materials of one model and equal parameters share; 0 and -0 are equal.
     pub fn digest(&self) -> u64 {
-        let text = format!("{} {}", self.model.name(), values_json(&self.values));
+        let values = self.values.map(|x| x + 0.0);
+        let text = format!("{} {}", self.model.name(), values_json(&values));
         stream_id(&text.bytes().map(u64::from).collect::<Vec<_>>())
     }
 

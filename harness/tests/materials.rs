@@ -51,6 +51,17 @@ fn a_model_stands_for_its_presets_and_keys_come_back() {
 }
 
 #[test]
+fn zeros_of_both_signs_have_one_digest() {
+    let [zero, negative] = [0.0, -0.0].map(|zero| {
+        let material = named(&["kajiya-kay"]).remove(0);
+        let values = material.values.with("kd", &[zero, 1.0, zero]);
+        NamedMaterial { values, ..material }
+    });
+    assert_eq!(zero.values, negative.values);
+    assert_eq!(zero.digest(), negative.digest());
+}
+
+#[test]
 fn variances_agree_with_quadrature_for_every_model() {
     let theta_o_deg = 45.0;
     let wo = viewer(theta_o_deg).as_dvec3().to_array();

@@ -79,3 +79,17 @@ fn every_model_is_scaled() {
     twice::<KajiyaKayParams>(&["kd", "ks"]);
     twice::<ChiangParams>(&[]);
 }
+
+#[test]
+fn values_with_equal_fields_are_equal() {
+    let color = [0.5, 0.4, 0.3];
+    let fresh = Values::none(ChiangParams::FIELDS).with("color", &color);
+    let replaced = Values::none(ChiangParams::FIELDS).with("sigma_a", &[1.0; 3]);
+    assert_eq!(replaced.with("color", &color), fresh);
+    assert_ne!(replaced.with("color", &[0.5, 0.4, 0.2]), fresh);
+    assert_ne!(fresh.without("color"), fresh);
+    assert_ne!(
+        Values::<f32>::none(KajiyaKayParams::FIELDS),
+        Values::none(ChiangParams::FIELDS)
+    );
+}

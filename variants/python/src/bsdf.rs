@@ -3,7 +3,7 @@
 use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, evals, samples};
 use crate::fields::double;
 use crate::material::Material;
-use crate::values::{items, vector, word};
+use crate::values::{items, literal, vector, word};
 use hairis_capi::layout::{BSDF_SIZE, LobeResult, RawBsdf};
 use hairis_capi::{columns, points};
 use pyo3::exceptions::PyValueError;
@@ -228,14 +228,14 @@ impl Bsdf {
     }
 
     fn __repr__(&self) -> String {
-        let [u, v, w] = self.wo.map(double);
-        let (material, h) = (self.material.get().__repr__(), double(self.h));
+        let [u, v, w] = self.wo.map(|x| literal(double(x)));
+        let (material, h) = (self.material.get().__repr__(), literal(double(self.h)));
         let lobes = if self.is_whole() {
             String::new()
         } else {
             format!(".with_lobes({:?})", self.kept())
         };
-        format!("{material}.prepare(({u:?}, {v:?}, {w:?}), {h:?}){lobes}")
+        format!("{material}.prepare(({u}, {v}, {w}), {h}){lobes}")
     }
 
     /// Returns the call that makes the same BSDF, for pickle and copy.

@@ -12,7 +12,7 @@ use hairis_materials::MaterialSpec;
 use hairis_variants::{ModelId, Values};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyString, PyTuple};
 
 /// Hair: a model with checked parameters.
 ///
@@ -98,6 +98,19 @@ impl Material {
     /// Returns the fields that have a value.
     fn given(&self) -> Vec<(&'static str, Value)> {
         fields_of(&self.values.map(double))
+    }
+
+    /// Returns the call that makes the material of these values.
+    fn call_of(&self, values: &Values) -> String {
+        let (name, energy) = (self.id.name(), self.energy);
+        let mut text = format!("hairis.Material(\"{name}\", energy=\"{energy}\"");
+        if let Some((field, word)) = self.id.choice() {
+            let _ = write!(text, ", {field}=\"{word}\"");
+        }
+        for (name, value) in fields_of(&values.map(double)) {
+            let _ = write!(text, ", {name}={}", written(&value, false));
+        }
+        text + ")"
     }
 
     /// Calls the C interface on hits. The caller must hold a borrow of the arrays of `to`.
@@ -449,27 +462,17 @@ impl Material {
     }
 
     pub(crate) fn __repr__(&self) -> String {
-        let mut text = format!(
-            "hairis.Material(\"{}\", energy=\"{}\"",
-            self.id.name(),
-            self.energy
-        );
-        if let Some((field, word)) = self.id.choice() {
-            let _ = write!(text, ", {field}=\"{word}\"");
-        }
-        for (name, value) in self.given() {
-            let _ = write!(text, ", {name}={}", written(&value, false));
-        }
-        text + ")"
+        self.call_of(&self.values)
     }
 
     fn __eq__(&self, other: &Self) -> bool {
-        let bits = |of: &Self| of.values.map(f32::to_bits);
-        (self.id, self.energy) == (other.id, other.energy) && bits(self) == bits(other)
+        (self.id, self.energy, self.values) == (other.id, other.energy, other.values)
     }
 
+    /// Hashes 0 and -0, which are equal, alike.
     fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
-        pyo3::types::PyString::new(py, &self.__repr__()).hash()
+        let values = self.values.map(|x| x + 0.0);
+        PyString::new(py, &self.call_of(&values)).hash()
     }
 
     /// Returns the arguments of the call that makes the same material, for pickle and copy.

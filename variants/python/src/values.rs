@@ -207,14 +207,23 @@ fn set(params: &mut Params, field: &Field, value: &Bound<'_, PyAny>) -> PyResult
     check(status, &error)
 }
 
+/// Writes a number as an expression of Python, which has no literal of infinity and NaN.
+pub(crate) fn literal(x: f64) -> String {
+    if x.is_finite() {
+        format!("{x:?}")
+    } else {
+        format!("float(\"{x}\")")
+    }
+}
+
 /// Writes a value as Python does, or as JSON does.
 pub(crate) fn written(value: &Value, is_json: bool) -> String {
     let (open, close) = if is_json { ('[', ']') } else { ('(', ')') };
     match value {
-        Value::Number(x) => format!("{x:?}"),
+        Value::Number(x) => literal(*x),
         Value::Word(word) => format!("\"{word}\""),
         Value::Numbers(numbers) => {
-            let numbers: Vec<_> = numbers.iter().map(|x| format!("{x:?}")).collect();
+            let numbers: Vec<_> = numbers.iter().map(|x| literal(*x)).collect();
             format!("{open}{}{close}", numbers.join(", "))
         }
     }

@@ -62,6 +62,40 @@ def test_replaced_fields_leave_no_trace() -> None:
     assert pickle.loads(pickle.dumps(hair)) == hair == hairis.Material.from_json(hair.to_json())
 
 
+ODD = [float("nan"), float("inf"), -float("inf"), -0.0, 1e-45, -3.4028235e38, 1e16, 1 / 3]
+
+
+@pytest.mark.parametrize("odd", ODD)
+@pytest.mark.parametrize("place", range(4))
+def test_odd_numbers_as_text(odd: float, place: int) -> None:
+    """The text of an object is an expression that makes the same object, whatever its numbers are."""
+    *wo, h = (odd if i == place else 0.5 for i in range(4))
+    hair = hairis.Material("chiang", "brown")
+    for bsdf in (hair.prepare(wo, h), hair.prepare(wo, h).with_lobes(["r"]), hair.prepare(wo, h).with_lobes([])):
+        for same in (eval(repr(bsdf), {"hairis": hairis}), pickle.loads(pickle.dumps(bsdf)), copy.deepcopy(bsdf)):
+            assert repr(same) == repr(bsdf)
+            wi = directions(20, 1)
+            for name, column in bsdf.eval_columns(wi).items():
+                assert (bits(column) == bits(same.eval_columns(wi)[name])).all()
+
+
+def test_zeros_of_both_signs_are_equal() -> None:
+    """Materials with equal fields are equal and have one hash."""
+    found = 0
+    for model, info in hairis.models().items():
+        for name, value in hairis.Material(model).fields.items():
+            if isinstance(value, str) or not info["fields"][name]["range"][0] <= 0:
+                continue
+            zeros = [0.0, -0.0] if isinstance(value, float) else [(0.0,) * len(value), (-0.0,) * len(value)]
+            a, b = (hairis.Material(model, **cast(dict[str, Any], {name: zero})) for zero in zeros)
+            assert a.fields == b.fields and a == b and not a != b and hash(a) == hash(b) and len({a, b}) == 1
+            for one in (a, b):
+                for same in (eval(repr(one)), pickle.loads(pickle.dumps(one)), hairis.Material.from_json(one.to_json())):
+                    assert same == one and hash(same) == hash(one) and repr(same) == repr(one)
+            found += 1
+    assert found > 15
+
+
 @pytest.mark.parametrize(("model", "preset", "choice"), ALL)
 def test_columns_agree(model: str, preset: str, choice: dict[str, Any], xi: NDArray[np.float32]) -> None:
     """Samples have the densities and values of evaluations, and the furnace agrees with the albedo."""

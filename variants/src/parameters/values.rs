@@ -283,9 +283,14 @@ impl Values {
     }
 }
 
-impl<T: PartialEq> PartialEq for Values<T> {
+/// Compares the fields that have a value: what a replaced field left behind does not count.
+impl<T: Copy + PartialEq> PartialEq for Values<T> {
     #[inline]
     fn eq(&self, other: &Self) -> bool {
-        self.fields == other.fields && self.given == other.given && self.numbers == other.numbers
+        let mut places = 0..self.fields.len();
+        let is_same = |place| self.numbers_at(place) == other.numbers_at(place);
+        self.fields == other.fields
+            && self.given == other.given
+            && places.all(|place| !self.has_at(place) || is_same(place))
     }
 }
