@@ -12,7 +12,8 @@ root=$PWD
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 work=$target/hosts
 mkdir -p "$work"
-prefix=$work/prefix
+# With a space, which every host has to quote.
+prefix=$work/the\ prefix
 capi=$root/variants/capi
 part() { printf -- '--- %s (%ss)\n' "$*" "$SECONDS"; }
 
@@ -110,20 +111,35 @@ cp -r "$prefix/lib/cmake" "$moved/share"
 cmake -S "$capi/tests" -B "$work/consumer-moved" -DCMAKE_PREFIX_PATH="$moved" -DCMAKE_BUILD_TYPE=Release > /dev/null
 cmake --build "$work/consumer-moved" --target shared > /dev/null
 "$work/consumer-moved/shared"
+# A prefix is one word of the flags, whatever its letters are, and refused where pkg-config cannot quote it.
+for name in 'a  b' "it's" 'a"b' 'a#b' 'a\b' 'a;b&c|d' 'a*?[x]' 'a`b`' ' a' $'\303\251'; do
+  odd=$work/odd/$name
+  "$capi/install.sh" "$odd" > "$work/odd.log" 2>&1 || { cat "$work/odd.log"; echo "FAIL a prefix: $odd"; exit 1; }
+  eval "flags=($(PKG_CONFIG_PATH=$odd/lib/pkgconfig pkg-config --cflags --libs hairis))"
+  [ "${flags[*]}" = "-I$odd/include -L$odd/lib -lhairis" ] || { echo "FAIL the flags of pkg-config: ${flags[*]}"; exit 1; }
+done
+for name in 'a$b' 'a(b' 'a)' $'a\nb' $'a\n' $'a\t' 'a '; do
+  if "$capi/install.sh" "$work/odd/$name" 2> "$work/odd.log" || [ "$(grep -c '^PREFIX must' "$work/odd.log")/$(wc -l < "$work/odd.log")" != 1/1 ]; then
+    echo "FAIL the prefix '$name' is not refused in one line"; exit 1
+  fi
+done
+rm -r "$work/odd"
 export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
 for example in furnace.c furnace.cpp pbrt_hair.cpp resample.cpp; do
   case $example in *.c) compiler='gcc -std=c11' ;; *) compiler='g++ -std=c++17' ;; esac
-  $compiler -O2 -Wall -Wextra -pedantic -Werror "$capi/examples/$example" -o "$work/example" $(pkg-config --cflags --libs hairis) -lm
+  eval "flags=($(pkg-config --cflags --libs hairis))"
+  $compiler -O2 -Wall -Wextra -pedantic -Werror "$capi/examples/$example" -o "$work/example" "${flags[@]}" -lm
   (cd "$work" && LD_LIBRARY_PATH=$prefix/lib ./example > example.log) || { cat "$work/example.log"; echo "FAIL $example"; exit 1; }
   tail -2 "$work/example.log"
 done
 
 part 'two Rust libraries'
 rustc --edition 2024 --crate-type staticlib -O "$capi/tests/other.rs" -o "$work/libother.a"
-for order in "$work/libother.a $prefix/lib/libhairis.a" "$prefix/lib/libhairis.a $work/libother.a"; do
-  gcc -std=c11 "${strict[@]}" "$capi/tests/two.c" -o "$work/two" $order -lpthread -ldl -lm
-  "$work/two"
-done
+other=$work/libother.a hairis=$prefix/lib/libhairis.a
+gcc -std=c11 "${strict[@]}" "$capi/tests/two.c" -o "$work/two" "$other" "$hairis" -lpthread -ldl -lm
+"$work/two"
+gcc -std=c11 "${strict[@]}" "$capi/tests/two.c" -o "$work/two" "$hairis" "$other" -lpthread -ldl -lm
+"$work/two"
 
 part wheel
 "$python" -m pip install -q --force-reinstall --no-deps "$work"/wheels/*.whl

@@ -31,15 +31,21 @@ impl ColumnValues {
     /// Returns the value at `row` as a field of CSV.
     fn field(&self, row: usize) -> Cow<'_, str> {
         match self {
-            Self::Text(values) if values[row].contains([',', '"', '\n', '\r']) => {
-                format!("\"{}\"", values[row].replace('"', "\"\"")).into()
-            }
-            Self::Text(values) => (&*values[row]).into(),
+            Self::Text(values) => field_of(&values[row]),
             Self::Whole(values) => values[row].to_string().into(),
             // Shortest digits that read back as the same number, with an exponent for numbers far from 1.
             Self::Number(values) if values[row].is_finite() => format!("{:?}", values[row]).into(),
             Self::Number(_) => "".into(),
         }
+    }
+}
+
+/// Returns a text as a field of CSV.
+fn field_of(text: &str) -> Cow<'_, str> {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\"")).into()
+    } else {
+        text.into()
     }
 }
 
@@ -108,7 +114,7 @@ impl Columns {
     ///
     /// Returns the errors of `out`.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
-        let names: Vec<&str> = self.0.iter().map(|(name, _)| &**name).collect();
+        let names: Vec<_> = self.0.iter().map(|(name, _)| field_of(name)).collect();
         writeln!(out, "{}", names.join(","))?;
         for row in 0..self.0.first().map_or(0, |(_, values)| values.len()) {
             let fields: Vec<Cow<'_, str>> =

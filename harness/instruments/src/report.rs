@@ -19,7 +19,8 @@ const FIGURES: &str = "figures";
 
 /// Page of a report: verdicts and one plot, then findings, then sections of plots with their tables folded away.
 ///
-/// Texts are plain: everything in them is escaped, and text between `` ` `` marks is set as code.
+/// Texts are plain: everything in them is escaped, and text between `` ` `` marks is set as code. Names that others choose go through
+/// [`literal`].
 ///
 /// ```
 /// use hairis_instruments::report::{Report, Section};
@@ -261,18 +262,41 @@ fn answer(text: &str) -> String {
     }
 }
 
-/// Escapes a text and sets parts between pairs of `` ` `` as code; numbers stay on one line with their unit.
+/// Returns a text, such as the name of a file, as every text of a report takes it: marks in it are not those of code.
+#[must_use]
+pub fn literal(text: &str) -> String {
+    text.replace('\\', "\\\\").replace('`', "\\`")
+}
+
+/// Escapes a text and sets parts between pairs of `` ` `` as code; numbers stay on one line with their unit. A mark behind a backslash
+/// is itself: see [`literal`].
 fn inline(text: &str) -> String {
-    let mut html = String::new();
-    let mut rest = text;
-    while let Some((before, after)) = rest.split_once('`') {
-        let Some((code, after)) = after.split_once('`') else {
-            break;
-        };
-        html.push_str(&format!("{}<code>{}</code>", escape(before), escape(code)));
-        rest = after;
+    // Text and code in turns.
+    let mut pieces = vec![String::new()];
+    let mut rest = text.chars().peekable();
+    while let Some(c) = rest.next() {
+        let piece = pieces.last_mut().expect("at least one");
+        match c {
+            '`' => pieces.push(String::new()),
+            '\\' => piece.push(rest.next_if(|c| ['`', '\\'].contains(c)).unwrap_or(c)),
+            _ => piece.push(c),
+        }
     }
-    (html + &escape(rest))
-        .replace(" %", "\u{a0}%")
-        .replace(" ns", "\u{a0}ns")
+    // A mark without its pair is text.
+    if pieces.len().is_multiple_of(2)
+        && let Some(last) = pieces.pop()
+        && let Some(piece) = pieces.last_mut()
+    {
+        *piece += &format!("`{last}");
+    }
+    let set = |(place, piece): (usize, &String)| {
+        let piece = escape(piece);
+        if place.is_multiple_of(2) {
+            piece
+        } else {
+            format!("<code>{piece}</code>")
+        }
+    };
+    let html: String = pieces.iter().enumerate().map(set).collect();
+    html.replace(" %", "\u{a0}%").replace(" ns", "\u{a0}ns")
 }

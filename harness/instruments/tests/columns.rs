@@ -20,6 +20,17 @@ fn csv_is_quoted_and_exact_and_what_is_missing_is_empty() {
     assert_eq!(text, want);
 }
 
+#[test]
+fn names_of_columns_are_quoted_as_well() {
+    let columns = Columns::default()
+        .number("a, \"b\"", [1.0])
+        .estimate("V\n", [hairis_instruments::stats::Estimate::exact(2.0)]);
+    let mut out = Vec::new();
+    columns.write_csv(&mut out).expect("written");
+    let text = String::from_utf8(out).expect("UTF-8");
+    assert_eq!(text, "\"a, \"\"b\"\"\",\"V\n\",\"V\n_se\"\n1.0,2.0,0.0\n");
+}
+
 #[cfg(feature = "parquet")]
 #[test]
 fn parquet_is_the_same_bytes_each_time() {

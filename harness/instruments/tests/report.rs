@@ -3,7 +3,7 @@
 // GLOB rayon::prelude::*
 use hairis_instruments::markup::well_formed;
 use hairis_instruments::plot::{Axis, Series, lines};
-use hairis_instruments::report::{Drawing, Report, Section};
+use hairis_instruments::report::{Drawing, Report, Section, literal};
 use hairis_instruments::table::Table;
 use std::fs;
 
@@ -49,6 +49,43 @@ fn hostile_text_is_inert() {
     assert!(
         html.contains("<code>&lt;img src=x onerror=alert(1)&gt;</code>"),
         "code is set as code"
+    );
+}
+
+/// A name has all of its letters, in text and in code, and sets nothing else as code.
+#[test]
+fn names_are_literal() {
+    for name in [
+        "a`b",
+        "`",
+        "``",
+        "\\",
+        "a\\`b`\\",
+        "\\\\",
+        "plain",
+        "<b>`x`</b>",
+    ] {
+        let escaped = hairis_instruments::markup::escape(name);
+        let name = literal(name);
+        let html = Section::new("").paragraph(format!("hair {name} of `{name}`: `code`"));
+        let html = Report {
+            sections: vec![html],
+            ..Report::default()
+        }
+        .html();
+        let expected =
+            format!("<p>hair {escaped} of <code>{escaped}</code>: <code>code</code></p>");
+        assert!(html.contains(&expected), "{name}: {html}");
+    }
+    let html = Section::new("").paragraph("a ` without a pair, C:\\hair");
+    let html = Report {
+        sections: vec![html],
+        ..Report::default()
+    }
+    .html();
+    assert!(
+        html.contains("<p>a ` without a pair, C:\\hair</p>"),
+        "{html}"
     );
 }
 

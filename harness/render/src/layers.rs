@@ -95,8 +95,13 @@ impl Beside {
 
 /// Returns the command line of this process, as Bash reads it. Paths are as they were given.
 fn command() -> String {
-    let words: Vec<String> = std::env::args_os().map(|word| quoted(&word)).collect();
-    words.join(" ")
+    words(std::env::args_os())
+}
+
+/// Returns the words of a command line as Bash reads them.
+pub(crate) fn words(words: impl IntoIterator<Item = impl AsRef<OsStr>>) -> String {
+    let quoted = words.into_iter().map(|word| quoted(word.as_ref()));
+    quoted.collect::<Vec<_>>().join(" ")
 }
 
 /// Quotes a word in ASCII. Words with other bytes than letters, digits and a few signs are in `$'...'`, where quotes and backslashes

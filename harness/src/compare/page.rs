@@ -7,7 +7,7 @@ use crate::lights::in_words;
 use crate::sampler::Sampler;
 use crate::speed::TimedOp;
 use crate::subject::ModelKind;
-use hairis_instruments::report::{Report, Section};
+use hairis_instruments::report::{Report, Section, literal};
 use hairis_instruments::table::number;
 
 /// Returns the page with all verdicts, plots and tables of the comparison.
@@ -50,17 +50,14 @@ pub fn report(of: &Comparison) -> Report {
         .tables([tables::agreement(of, Depth::Full)]);
     let check = &of.efficiency.check;
     let machine = of.machine.summary();
+    let notes = of.settings.environment_notes.iter();
+    let notes: Vec<_> = notes.map(|note| literal(note)).collect();
     let mut facts = vec![
         ["eight lanes run on", of.speed.detected_level],
         ["the program was compiled for", of.speed.compiled_level],
         ["machine", &machine],
     ];
-    facts.extend(
-        of.settings
-            .environment_notes
-            .iter()
-            .map(|note| ["environment note", note.as_str()]),
-    );
+    facts.extend(notes.iter().map(|note| ["environment note", note]));
     let method = Section::new("Method and machine")
         .paragraph(
             "Every estimate is of the reflected radiance, the mean of red, green and blue, on a fibre along the world's \
@@ -82,6 +79,7 @@ pub fn report(of: &Comparison) -> Report {
         environment,
         ..
     } = &of.settings;
+    let environment = literal(environment);
     let quick = if *quick { " --quick" } else { "" };
     Report {
         title: "Hair scattering: eight lanes, and Cauchy for Gaussian".to_owned(),

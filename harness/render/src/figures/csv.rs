@@ -17,6 +17,7 @@ use hairis_instruments::machine;
 use hairis_instruments::machine::Machine;
 use hairis_instruments::stats::Estimate;
 use serde::Serialize;
+use std::ffi::OsString;
 use std::path::Path;
 
 /// Settings that the figures depend on, which are written as `figures.json`.
@@ -149,39 +150,49 @@ pub fn columns(rows: &[Row]) -> Columns {
         )
 }
 
-/// Returns the command line without folders: maps and materials appear by name alone.
-fn command(flags: &Figures, maps: &[String]) -> String {
-    let mut words = vec!["hairis-render figures".to_owned()];
-    words.extend(flags.quick.then(|| "--quick".to_owned()));
-    words.extend(maps.iter().map(|map| format!("--env {map}")));
-    words.extend(
-        flags
-            .scene
-            .iter()
-            .map(|scene| format!("--scene {}", scene.word())),
-    );
-    for material in &flags.material {
-        let name = material.file_name().unwrap_or_default();
-        words.push(format!("--material {}", name.display()));
+/// Returns the command line without folders, as Bash reads it: maps and materials appear by name alone.
+#[must_use]
+pub fn command(flags: &Figures, maps: &[String]) -> String {
+    let mut words: Vec<OsString> = vec!["hairis-render".into(), "figures".into()];
+    let mut add = |name: &str, value: Option<OsString>| {
+        words.push(format!("--{name}").into());
+        words.extend(value);
+    };
+    if flags.quick {
+        add("quick", None);
     }
-    words.extend(flags.set.iter().map(|set| format!("--set {set}")));
-    words.extend(flags.integrator.and_then(|one| flag("integrator", one)));
+    for map in maps {
+        add("env", Some(map.into()));
+    }
+    for scene in &flags.scene {
+        add("scene", Some(scene.word().into()));
+    }
+    for material in &flags.material {
+        add("material", material.file_name().map(OsString::from));
+    }
+    for set in &flags.set {
+        add("set", Some(set.into()));
+    }
+    if let Some(integrator) = flags.integrator {
+        add("integrator", spelled(integrator));
+    }
     if flags.xi != Sequence::Sobol {
-        words.extend(flag("xi", flags.xi));
+        add("xi", spelled(flags.xi));
     }
     if flags.rectangles != RectangleSampling::default() {
-        words.extend(flag("rectangles", flags.rectangles));
+        add("rectangles", spelled(flags.rectangles));
     }
-    words.extend(flags.models.then(|| "--models".to_owned()));
-    words.push(format!("--seed {}", flags.seed));
-    words.join(" ")
+    if flags.models {
+        add("models", None);
+    }
+    add("seed", Some(flags.seed.to_string().into()));
+    crate::layers::words(words)
 }
 
-/// Returns a flag with its value, as the command line spells them.
-fn flag(name: &str, value: impl ValueEnum) -> Option<String> {
-    value
-        .to_possible_value()
-        .map(|value| format!("--{name} {}", value.get_name()))
+/// Returns the value of a flag, as the command line spells it.
+fn spelled(value: impl ValueEnum) -> Option<OsString> {
+    let value = value.to_possible_value()?;
+    Some(value.get_name().into())
 }
 
 /// Adds the rows of a scene.

@@ -17,7 +17,7 @@ use hairis_instruments::error::Error;
 use hairis_instruments::files::whole;
 use hairis_instruments::machine;
 use hairis_instruments::plot::{Axis, Bar, Series, bars, lines};
-use hairis_instruments::report::{Drawing, Report, Section};
+use hairis_instruments::report::{Drawing, Report, Section, literal};
 use hairis_instruments::table::{Table, number};
 use std::io::Write as _;
 use std::path::Path;
@@ -70,7 +70,7 @@ fn page(
     ]];
     verdicts.extend(
         all.iter()
-            .map(|measured| [measured.title(), headline(measured)]),
+            .map(|measured| [literal(&measured.title()), headline(measured)]),
     );
     let method = Section::new("Method and machine")
         .paragraph(format!(
@@ -124,7 +124,7 @@ fn overview(all: &[Measured]) -> Drawing {
             };
             let Gain { ratio, is_below } = gain(measured, sampler, measure);
             if is_below {
-                left_out.push(format!("{name} in {}", measured.title()));
+                left_out.push(format!("{name} in {}", literal(&measured.title())));
             }
             gains.push(if is_below {
                 f64::NAN.into()
@@ -232,7 +232,7 @@ fn marked(runs: &Runs, measure: Measure, text: String) -> String {
 }
 
 fn section(measured: &Measured) -> std::io::Result<Section> {
-    let title = measured.title();
+    let title = literal(&measured.title());
     let shown = measured.shown();
     let at_samples: Vec<&Runs> = measured
         .samplers
@@ -264,7 +264,7 @@ fn section(measured: &Measured) -> std::io::Result<Section> {
         .paragraph(format!(
             "Light: {}; hair: `{}`. {}",
             kind(measured),
-            measured.hair,
+            literal(&measured.hair),
             visible(measured)
         ))
         .paragraph(sentence(measured))

@@ -3,6 +3,7 @@
 use super::measure::{BySampler, Measured, RESAMPLED};
 use crate::protocol::{Measure, Runs};
 use core::cmp::Ordering;
+use hairis_instruments::report::literal;
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::number::{ratio, ratio_with_error};
 
@@ -196,7 +197,7 @@ pub(super) fn scenes(all: &[Measured]) -> String {
     let names = |scenes: &[&Measured]| {
         let titles: Vec<String> = scenes
             .iter()
-            .map(|measured| format!("`{}`", measured.title()))
+            .map(|measured| format!("`{}`", literal(&measured.title())))
             .collect();
         listed(&titles.iter().map(String::as_str).collect::<Vec<&str>>())
     };

@@ -5,7 +5,7 @@ use hairis_harness::materials::NamedMaterial;
 use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::error::Error;
 use hairis_instruments::plot::{Axis, Series, SphereGrid, heat_map, lines};
-use hairis_instruments::report::{Drawing, Report, Section};
+use hairis_instruments::report::{Drawing, Report, Section, literal};
 use hairis_instruments::table::{Table, number};
 use hairis_materials::MaterialSpec;
 use hairis_variants::{Kind, Values};
@@ -41,7 +41,7 @@ impl Shown<'_> {
         Ok(Report {
             title: format!("{to} fitted to {name}"),
             subtitle: format!("hairis fit, norm {}", self.norm.name()),
-            findings: vec![self.sentence() + "."],
+            findings: vec![literal(&self.sentence()) + "."],
             sections: vec![
                 Section::new("Values").tables([self.values(), self.starts()]),
                 Section::new("Residuals")

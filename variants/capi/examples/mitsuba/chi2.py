@@ -2,6 +2,7 @@
 over all; then controls, densities 5% too large or too small, which must be refused. chi2.py [SAMPLES]"""
 
 import sys
+from xml.sax.saxutils import quoteattr
 
 import drjit as dr
 import mitsuba as mi
@@ -36,7 +37,7 @@ class FibreDomain:
 
 def xml(properties):
     kinds = {str: "string", float: "float"}
-    return "".join(f'<{kinds[type(v)]} name="{k}" value="{v}"/>' for k, v in properties.items())
+    return "".join(f"<{kinds[type(v)]} name={quoteattr(k)} value={quoteattr(str(v))}/>" for k, v in properties.items())
 
 
 def passes(properties, wi, samples, tests):
