@@ -140,51 +140,37 @@ function build() {
   const legend = (text, small) => make('legend', {}, text, small ? make('small', {}, ` ${small}`) : null);
   const models = [0, 1].map(slot => kernel.model(state.materials[slot].model)),
     near = models.some(model => model.near_field);
-  const set = (of, name) => value => {
-    state[of][name] = value;
-    return changed();
-  };
+  const angle = (of, name, shown) =>
+    slider({
+      ...shown,
+      ...limited(STATE[of][name], shown.label, value => {
+        state[of][name] = value;
+        return changed();
+      }),
+      get: () => state[of][name],
+    });
   const lobes = models[0].lobes.length >= models[1].lobes.length ? models[0].lobes : models[1].lobes;
   fill(
     $('view'),
     legend('View'),
-    slider({
+    angle('view', 'theta', {
       label: 'viewer θₒ',
       unit: '°',
       title: 'Inclination of the viewer to the normal plane',
       range: [-89, 89],
-      limits: '−90 to 90°',
-      get: () => state.view.theta,
-      set: value =>
-        Math.abs(value) <= 90 ? set('view', 'theta')(value) : `viewer θₒ must be in [−90, 90]°, got ${value}`,
     }),
-    near &&
-      slider({
-        label: 'offset h',
-        title: 'Offset of the hit across the fibre',
-        range: [-1, 1],
-        limits: '−1 to 1',
-        get: () => state.view.h,
-        set: value => (Math.abs(value) <= 1 ? set('view', 'h')(value) : `h must be in [−1, 1], got ${value}`),
-      }),
-    slider({
+    near && angle('view', 'h', { label: 'offset h', title: 'Offset of the hit across the fibre', range: [-1, 1] }),
+    angle('cut', 'theta', {
       label: 'cut at θᵢ',
       unit: '°',
       title: 'Inclination of the plot around the fibre',
       range: [-90, 90],
-      limits: '−90 to 90°',
-      get: () => state.cut.theta,
-      set: value => (Math.abs(value) <= 90 ? set('cut', 'theta')(value) : `cut θᵢ must be in [−90, 90]°, got ${value}`),
     }),
-    slider({
+    angle('cut', 'phi', {
       label: 'cut at φᵢ',
       unit: '°',
       title: 'Azimuth of the plot along the fibre',
       range: [-180, 180],
-      limits: '−180 to 180°',
-      get: () => state.cut.phi,
-      set: value =>
-        Math.abs(value) <= 180 ? set('cut', 'phi')(value) : `cut φᵢ must be in [−180, 180]°, got ${value}`,
     }),
     make(
       'div',

@@ -57,6 +57,12 @@ function slider({ label, unit = '', title, range: [least, most], log = false, li
   );
 }
 
+/// The limits of a slider by the description of its number, which refuses all others; `set` takes the rest.
+const limited = ({ least, most, rule, allows }, label, set) => ({
+  limits: minus(`${least} to ${most}`),
+  set: value => (allows(value) ? set(value) : `${label} must be ${rule}, got ${value}`),
+});
+
 /// A colour: a picker of its hue, a slider of its largest channel, and the three numbers.
 function colorRow({ label, title, most, get, set }) {
   const id = `control-${unique++}`;

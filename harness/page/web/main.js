@@ -345,7 +345,7 @@ function listen() {
     ),
   );
   const turn = (x, y) => {
-    state.turn = [state.turn[0] + x, Math.max(-1.5, Math.min(1.5, state.turn[1] + y))];
+    state.turn = dragged(state.turn, [x, y], STATE.turn);
     drawSurfaces($('surface'), maps, peakOf(), state.turn);
   };
   movable(
@@ -457,6 +457,7 @@ async function start() {
     kernel,
     figures,
     request,
+    readLink,
     show,
     timeMap,
     tuft,

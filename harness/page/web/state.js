@@ -4,23 +4,90 @@ let state,
   past = [],
   future = [];
 
-/// The first view: the Gaussian model beside the all-Cauchy one, on the material that the project's figures are of.
-function initialState() {
-  const [a, b] = [kernel.models[0], kernel.models[1]].map(model => newMaterial(model));
-  return {
-    materials: [a, b],
-    linked: true,
-    tab: 0,
-    lobes: 15,
-    show: 'value',
-    scale: 'log',
-    samples: false,
-    view: { theta: 45, h: 0.3 },
-    cut: { theta: -45, phi: 0 },
-    turn: [-0.6, 0.35],
-    light: { turn: 0, exposure: 0 },
-    camera: [0.5, 0.15],
-  };
+/// A field of the state: its first value, the rule in words, and whether a value keeps to it.
+const field = (first, rule, allows) => ({
+  first,
+  rule,
+  allows,
+  read(value, path) {
+    if (!allows(value)) throw refused(path, rule, value);
+    return value;
+  },
+});
+const between = (least, most, first) => ({
+  ...field(
+    first,
+    `a number in [${least}, ${most}]`,
+    value => typeof value === 'number' && value >= least && value <= most,
+  ),
+  least,
+  most,
+});
+const oneOf = (...values) => field(values[0], `one of ${values.map(said).join(', ')}`, value => values.includes(value));
+
+const described = slot => ({
+  get first() {
+    return newMaterial(kernel.models[slot]);
+  },
+  read: readMaterial,
+});
+
+/// What the page shows, and every value that it may have. The first values are the first view: the Gaussian model beside the all-Cauchy
+/// one, on the material that the project's figures are of. Links are written and read by this description, and controls keep to it.
+const STATE = {
+  materials: [described(0), described(1)],
+  linked: oneOf(true, false),
+  tab: oneOf(0, 1),
+  lobes: field(15, 'a whole number in [0, 15]', value => Number.isInteger(value) && value >= 0 && value <= 15),
+  show: oneOf('value', 'color', 'pdf'),
+  scale: oneOf('log', 'linear'),
+  samples: oneOf(false, true),
+  view: { theta: between(-90, 90, 45), h: between(-1, 1, 0.3) },
+  cut: { theta: between(-90, 90, -45), phi: between(-180, 180, 0) },
+  turn: [between(-Math.PI, Math.PI, -0.6), between(-1.5, 1.5, 0.35)],
+  light: { turn: between(-360, 360, 0), exposure: between(-24, 24, 0) },
+  camera: [between(-Math.PI, Math.PI, 0.5), between(-1.2, 1.2, 0.15)],
+};
+
+/// Two angles of the state after a drag: the first goes around, the second stops at its ends.
+const dragged = ([around, up], [x, y], [, { least, most }]) => [
+  around + x - 2 * Math.PI * Math.round((around + x) / (2 * Math.PI)),
+  Math.max(least, Math.min(most, up + y)),
+];
+
+const initialState = () => read(STATE);
+
+/// A value in a refusal, cut where it is long.
+function said(value) {
+  const text = typeof value === 'number' ? `${value}` : (JSON.stringify(value) ?? 'nothing');
+  return text.length > 60 ? `${text.slice(0, 60)}…` : text;
+}
+const refused = (path, rule, value) => new Error(`${path} must be ${rule}, got ${said(value)}`);
+const isObject = value => typeof value === 'object' && value !== null && !Array.isArray(value);
+
+/// Throws for a value that is no object, or that has a field that is none of `names`.
+function checkNames(value, names, path) {
+  if (!isObject(value)) throw refused(path || 'the state', 'an object', value);
+  const other = Object.keys(value).find(name => !names.includes(name));
+  if (other !== undefined)
+    throw new Error(
+      `${path && `${path}.`}${said(other).slice(1, -1)}: unknown field, expected one of ${names.join(', ')}`,
+    );
+}
+
+/// A value by its description: what is missing is as in the first view. Throws a sentence on what is not described or not allowed.
+function read(like, given, path = '') {
+  if (like.read) return given === undefined ? like.first : like.read(given, path);
+  if (Array.isArray(like)) {
+    if (given !== undefined && !(Array.isArray(given) && given.length === like.length))
+      throw refused(path, `a list of ${like.length}`, given);
+    return like.map((entry, place) => read(entry, given?.[place], `${path}[${place}]`));
+  }
+  const names = Object.keys(like);
+  if (given !== undefined) checkNames(given, names, path);
+  return Object.fromEntries(
+    names.map(name => [name, read(like[name], given?.[name], path ? `${path}.${name}` : name)]),
+  );
 }
 
 function newMaterial(model) {
@@ -63,30 +130,14 @@ function move(from, to) {
   return true;
 }
 
-const link = () => `#${encodeURIComponent(JSON.stringify(state))}`;
+const link = () => `#${encodeURIComponent(JSON.stringify(read(STATE, state)))}`;
 
 /// The state of an address, or a sentence that says why there is none.
 function readLink(hash) {
   if (hash.length < 2) return { state: initialState() };
   try {
-    const found = { ...initialState(), ...JSON.parse(decodeURIComponent(hash.slice(1))) };
-    if (!Array.isArray(found.materials) || found.materials.length !== 2) throw new Error('it has no two materials');
-    found.materials.forEach((material, slot) => {
-      if (!kernel.model(material?.model)) throw new Error(`there is no model ${JSON.stringify(material?.model)}`);
-      const refusal = checkMaterial(material) || kernel.setMaterial(slot, material);
-      if (refusal) throw new Error(refusal);
-    });
-    const { materials, ...rest } = initialState();
-    for (const [name, like] of Object.entries(rest))
-      if (!isLike(found[name], like))
-        throw new Error(`${name} must be like ${JSON.stringify(like)}, got ${JSON.stringify(found[name])}`);
-    for (const [name, value, most] of [
-      ['view.theta', found.view.theta, 90],
-      ['view.h', found.view.h, 1],
-      ['cut.theta', found.cut.theta, 90],
-      ['cut.phi', found.cut.phi, 180],
-    ])
-      if (!(Math.abs(value) <= most)) throw new Error(`${name} must be in [-${most}, ${most}], got ${value}`);
+    const found = read(STATE, JSON.parse(decodeURIComponent(hash.slice(1))));
+    found.materials.forEach((material, slot) => accept(slot, material, `materials[${slot}].`));
     return { state: found };
   } catch (error) {
     return {
@@ -96,47 +147,58 @@ function readLink(hash) {
   }
 }
 
-/// Whether a value has the shape of another: the same type, and the same entries.
-function isLike(value, like) {
-  if (typeof like !== 'object')
-    return typeof value === typeof like && (typeof like !== 'number' || Number.isFinite(value));
-  return (
-    typeof value === 'object' &&
-    value !== null &&
-    Object.entries(like).every(([name, entry]) => isLike(value[name], entry))
-  );
+/// Gives the module a material, by its values and then by an artist's controls. Throws what it refuses.
+function accept(slot, material, path) {
+  for (const one of [{ ...material, artist: null }, material]) {
+    const refusal = kernel.setMaterial(slot, one);
+    if (refusal) throw new Error(`${path}${one.artist ? 'artist.' : path && 'values.'}${refusal}`);
+  }
 }
 
-/// Checks the shape of values; a refusal as text, or nothing.
-function checkMaterial({ model, values, artist }) {
-  const { fields } = kernel.model(model);
-  if (artist) {
-    for (const { name, kind } of kernel.artist)
-      if ([artist[name]].flat().length !== (kind === 'rgb' ? 3 : 1) || ![artist[name]].flat().every(Number.isFinite))
-        return `${name} must be ${kind === 'rgb' ? 'three numbers' : 'a number'}, got ${JSON.stringify(artist[name])}`;
-    return '';
-  }
-  for (const name of Object.keys(values ?? {}))
-    if (!fields.some(field => field.name === name))
-      return `${name}: unknown field, expected one of ${fields.map(field => field.name).join(', ')}`;
+/// A material by the module's description. A model without a choice takes the word of any other.
+function readMaterial(given, path) {
+  checkNames(given, ['model', 'word', 'values', 'artist'], path);
+  const model = kernel.model(given.model);
+  if (!model) throw refused(`${path}.model`, `one of ${kernel.models.map(({ name }) => name).join(', ')}`, given.model);
+  const words = (model.choice ? model : kernel).entries.map(({ word }) => word),
+    { word = words[0], values, artist = null } = given;
+  if (!words.includes(word)) throw refused(`${path}.word`, `one of ${words.filter(Boolean).join(', ')}`, word);
+  readValues(model.fields, values, `${path}.values`);
+  if (artist && model.artist) readValues(kernel.artist, artist, `${path}.artist`);
+  else if (artist !== null)
+    throw refused(`${path}.artist`, model.artist ? 'an object or null' : `null for ${model.name}`, artist);
+  return { model: model.name, word, values, artist };
+}
+
+/// Checks values by the fields that they are of, as `hairis eval` does.
+function readValues(fields, values, path) {
+  if (values === undefined) throw new Error(`${path}: missing`);
+  checkNames(
+    values,
+    fields.map(({ name }) => name),
+    path,
+  );
   for (const field of fields) {
-    const value = values?.[field.name],
+    const value = values[field.name],
+      at = `${path}.${field.name}`,
       width = widthOf(field);
-    const group = fields.filter(other => other.name === field.name || other.instead_of === field.name);
-    if (value === undefined) {
-      if (!field.optional && !field.instead_of && !group.some(other => values?.[other.name] !== undefined))
-        return `${field.name}: missing`;
-    } else if (field.kind === 'word') {
-      if (!field.words.includes(value))
-        return `${field.name} must be one of ${field.words.join(', ')}, got ${JSON.stringify(value)}`;
-    } else if (!(
-      [value].flat().length === width &&
-      [value].flat().every(number => typeof number === 'number' && Number.isFinite(number))
-    )) {
-      return `${field.name} must be ${width > 1 ? `${width} numbers` : 'a number'}, got ${JSON.stringify(value)}`;
+    if (!field.instead_of) {
+      const group = fields.filter(other => other.name === field.name || other.instead_of === field.name),
+        [first, second] = group.filter(other => values[other.name] !== undefined);
+      if (!first && !field.optional) throw new Error(`${at}: missing`);
+      if (second) throw new Error(`${path}.${first.name}: given together with ${second.name}; give one of them`);
+    }
+    if (value === undefined) continue;
+    if (field.kind === 'word') {
+      if (!field.words.includes(value)) throw refused(at, `one of ${field.words.join(', ')}`, value);
+    } else if (
+      width > 1
+        ? !(Array.isArray(value) && value.length === width && value.every(Number.isFinite))
+        : !Number.isFinite(value)
+    ) {
+      throw refused(at, width > 1 ? `${width} numbers` : 'a number', value);
     }
   }
-  return '';
 }
 
 /// A request of `hairis eval` for a slot: its answer is that of the readout.
@@ -160,28 +222,37 @@ function fieldsOf(material, slot) {
   return kernel.setMaterial(slot, material) ? material.values : kernel.readValues(kernel.model(material.model));
 }
 
+/// The inclination of a direction, which has the length 1 as in `hairis eval`.
+function inclination(wo) {
+  if (!(Array.isArray(wo) && wo.length === 3 && Math.abs(Math.hypot(...wo) - 1) <= 1e-3))
+    throw refused('wo', 'a unit vector', wo);
+  return Math.asin(wo[0] / Math.hypot(...wo)) / RAD;
+}
+
 /// Takes a request of `hairis eval` as a slot's material; a refusal as text, or nothing.
 function takeRequest(text, slot) {
-  let given;
   try {
-    given = JSON.parse(text);
+    const given = JSON.parse(text),
+      model = kernel.model(given?.model);
+    if (!isObject(given)) throw refused('the request', 'an object', given);
+    if (!model) throw refused('model', `one of ${kernel.models.map(({ name }) => name).join(', ')}`, given.model);
+    const { choice, near_field } = model,
+      known = ['model', choice, 'params', 'wo', near_field && 'h', 'wi', 'xi'].filter(Boolean);
+    checkNames(given, known, '');
+    const words = model.entries.map(({ word }) => word),
+      { [choice]: word = words[0], params, wo, h } = given;
+    if (!words.includes(word)) throw refused(choice, `one of ${words.join(', ')}`, word);
+    readValues(model.fields, params, 'params');
+    const view = { ...state.view };
+    if (h !== undefined) view.h = STATE.view.h.read(h, 'h');
+    if (wo !== undefined) view.theta = inclination(wo);
+    const material = { model: model.name, word, values: params, artist: null };
+    accept(slot, material, '');
+    Object.assign(state, { linked: false, view });
+    state.materials[1 - slot] = materialOf(1 - slot);
+    state.materials[slot] = material;
+    return '';
   } catch (error) {
-    return `The JSON was not read: ${error.message}.`;
+    return error instanceof SyntaxError ? `The JSON was not read: ${error.message}.` : error.message;
   }
-  const model = kernel.model(given?.model);
-  if (!model)
-    return `model must be one of ${kernel.models.map(({ name }) => name).join(', ')}, got ${JSON.stringify(given?.model)}`;
-  const word = model.choice && given[model.choice];
-  const entry = model.entries.find(one => one.word === (word ?? model.entries[0].word));
-  if (!entry)
-    return `${model.choice} must be one of ${model.entries.map(one => one.word).join(', ')}, got ${JSON.stringify(word)}`;
-  const material = { model: model.name, word: entry.word, values: given.params, artist: null };
-  const refusal = checkMaterial(material) || kernel.setMaterial(slot, material);
-  if (refusal) return refusal;
-  state.linked = false;
-  state.materials[1 - slot] = materialOf(1 - slot);
-  state.materials[slot] = material;
-  if (typeof given.h === 'number' && Math.abs(given.h) <= 1) state.view.h = given.h;
-  if (Array.isArray(given.wo) && Math.abs(given.wo[0]) <= 1) state.view.theta = Math.asin(given.wo[0]) / RAD;
-  return '';
 }

@@ -360,8 +360,7 @@ function buildTuft() {
     });
     const context = canvas.getContext('2d', { alpha: false });
     const turn = (x, y) => {
-      const [a, b] = state.camera;
-      state.camera = [a + x, Math.max(-1.2, Math.min(1.2, b + y))];
+      state.camera = dragged(state.camera, [x, y], STATE.camera);
       restartTuft();
     };
     movable(
@@ -449,32 +448,19 @@ function buildTuft() {
 
 /// Controls of the tuft that the state has.
 function buildTuftControls() {
-  const set = name => value => {
-    state.light[name] = value;
-    restartTuft();
-    return '';
-  };
+  const control = (name, shown, take) =>
+    slider({
+      ...shown,
+      ...limited(STATE.light[name], shown.label, value => {
+        state.light[name] = value;
+        take();
+        return '';
+      }),
+      get: () => state.light[name],
+    });
   fill(
     $('tuft-controls'),
-    slider({
-      label: 'light turn',
-      unit: '°',
-      range: [-180, 180],
-      limits: 'any angle',
-      get: () => state.light.turn,
-      set: set('turn'),
-    }),
-    slider({
-      label: 'exposure',
-      unit: 'EV',
-      range: [-4, 4],
-      limits: 'any number',
-      get: () => state.light.exposure,
-      set: value => {
-        state.light.exposure = value;
-        if (tuft.steps) showTuft();
-        return '';
-      },
-    }),
+    control('turn', { label: 'light turn', unit: '°', range: [-180, 180] }, restartTuft),
+    control('exposure', { label: 'exposure', unit: 'EV', range: [-4, 4] }, () => tuft.steps && showTuft()),
   );
 }
