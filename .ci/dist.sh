@@ -1,6 +1,6 @@
 #!/bin/bash
 # Puts everything that a release consists of into one folder: dist.sh [DIR], by default target/dist. Archives of the Rust packages, the C
-# library with its headers, the wheel, the generated shaders and the page for browsers, with a list of contents and checksums. Needs
+# library with its headers, the wheel, manual pages and shell completions, the generated shaders and the page for browsers, with a list of contents and checksums. Needs
 # what .ci/package.sh, .ci/hosts.sh and .ci/page.sh need.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -37,6 +37,10 @@ pack "$c"
 python=$target/hosts/venv/bin
 [ -x "$python/maturin" ] || { python3 -m venv "$target/hosts/venv" && "$python/pip" install -q 'maturin>=1.9,<2'; }
 (cd variants/python && "$python/maturin" build -q --locked --target-dir "$target/hosts/wheel" --out "$dir")
+
+manual=hairis-manual-$version
+quietly cargo run -q --release --locked -p hairis-manual -- "$stage/$manual"
+pack "$manual"
 
 shaders=hairis-shaders-$version
 HAIRIS=$(.ci/release.sh)/hairis

@@ -17,13 +17,13 @@ failed=0
 for round in $(seq "${1:-1}"); do
   seed=$(od -An -N8 -tu8 /dev/urandom | tr -d ' ')
   echo "round $round: HAIRIS_SEED=$seed"
-  HAIRIS_SEED=$seed HAIRIS_CASES=4 cargo test -q --locked -p hairis -p hairis-variants --all-features --test main --no-fail-fast -- \
+  HAIRIS_SEED=$seed HAIRIS_CASES=4 cargo test -q --locked -p hairis -p hairis-variants --all-features --test main --test samplers --no-fail-fast -- \
     --include-ignored || { echo "FAIL seed $seed"; failed=1; }
 done
 export HAIRIS_CASES=1
 if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then
   # A target folder of its own, so that neither build discards the other's work.
-  CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-target}/v3 RUSTFLAGS="$RUSTFLAGS -Ctarget-cpu=x86-64-v3" cargo test -q -p hairis --all-features || failed=1
+  CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-target}/v3 RUSTFLAGS="$RUSTFLAGS -Ctarget-cpu=x86-64-v3" cargo test -q -p hairis --all-features --lib --test main --test samplers || failed=1
 fi
 # Energy of 10,000 materials of each kind and bell: figures are printed.
 HAIRIS_MATERIALS=10000 cargo test -q --locked --release -p hairis --all-features --test main conserves_energy -- --nocapture || failed=1

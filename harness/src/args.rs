@@ -4,6 +4,25 @@ use clap::{Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+/// What `hairis` prints without arguments.
+pub const ENTRANCE: &str = "\
+hairis evaluates models of light scattered by hair, and measures what samplers and SIMD are worth.
+
+  eval      values, densities and samples of any model, from lines of JSON
+  compare   speed, accuracy and variance on this machine: 20 seconds with --quick
+  shader    a model as source of C, WGSL, GLSL, HLSL, Metal, CUDA and others
+  fit       the parameters of one model whose look is nearest to that of another
+  study     every sampler over a whole grid of hair and views; merge joins its parts
+  claims    what the paper claims, each claim with figures
+
+Try:
+  hairis eval --example gaussian | hairis eval
+  hairis compare --quick
+  hairis shader --model gaussian --target wgsl
+
+hairis COMMAND --help lists the flags of a command.
+";
+
 /// Hair scattering: evaluate it line by line, and compare implementations, models and samplers.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "hairis", version, arg_required_else_help = false)]
@@ -67,11 +86,14 @@ pub struct Words {
 }
 
 /// Flags of `hairis eval`.
-#[derive(Clone, Copy, Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub struct Eval {
     /// The code path that computes the answers
     #[arg(long, value_enum, default_value_t = CodePath::X8)]
     pub path: CodePath,
+    /// Print a request for a model, which can be edited and answered, and read none
+    #[arg(long, value_name = "MODEL", conflicts_with = "path")]
+    pub example: Option<String>,
 }
 
 /// Code path of `hairis eval`. All give the same fields.
@@ -99,6 +121,9 @@ pub struct Compare {
     /// Folder for compare.json, report.html and figures/; made if missing
     #[arg(long, value_name = "DIR", default_value = "out/compare")]
     pub out: PathBuf,
+    /// Print the tables, and the verdicts on standard error
+    #[arg(long)]
+    pub tables: bool,
     /// Environment light, latitude-longitude, as a .hdr or .exr file [default: a procedural sky]
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,

@@ -8,8 +8,6 @@ use crate::args::Command;
 use hairis_instruments::error::Error;
 use hairis_instruments::light::{Environment, LightError, Sky};
 use hairis_instruments::program::{check_threads, say};
-use hairis_instruments::table::Table;
-use std::io::{self, Write};
 use std::path::Path;
 
 /// Executes a command with its flags.
@@ -51,28 +49,6 @@ pub fn environment(
     }
     environment.notes().iter().for_each(|note| say(note));
     Ok((environment, path.display().to_string()))
-}
-
-/// Prints tables on standard output. If the reader closes the pipe early, names the file that has the tables on standard error.
-///
-/// # Errors
-///
-/// Returns [`Error::Write`] for every failure other than a closed pipe.
-pub fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>, file: &Path) -> Result<(), Error> {
-    let mut out = io::stdout().lock();
-    for table in tables {
-        match writeln!(out, "{}", table.to_text(None)).and_then(|()| out.flush()) {
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
-                say(&format!(
-                    "standard output was closed; the tables are in {}",
-                    file.display()
-                ));
-                return Ok(());
-            }
-            result => result.map_err(Error::Write)?,
-        }
-    }
-    Ok(())
 }
 
 /// Reports the failures on standard error, and returns an error if there are any.

@@ -1,6 +1,6 @@
 //! Choice of lobes by channel: its gain on coloured hair, and exactness of its values and densities.
 
-use crate::family::Bands;
+use crate::hair::Bands;
 use crate::support::{Draws, direction, double, lanes_of, oracle};
 use core::f64::consts::PI;
 use hairis::model::Model;

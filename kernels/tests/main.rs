@@ -1,5 +1,5 @@
-//! Tests of the kernels: one binary, a module a subject. With `--cfg hairis_one`, for developers, those of the samplers with other constants
-//! than a tested one are left out, and those that are slow to compile.
+//! Tests of the kernels: one binary, a module a subject. With `--cfg hairis_one`, for developers, those that are slow to compile are left
+//! out. Samplers that differ from a tested one by constants have a binary of their own.
 #![allow(clippy::unwrap_used, reason = "a test may panic: that is how it fails")]
 #![cfg_attr(
     hairis_one,
@@ -7,12 +7,11 @@
 )]
 
 #[cfg(not(hairis_one))]
-mod by_channel;
-#[cfg(not(hairis_one))]
 mod conserving;
 mod default_level;
 mod family;
 mod frames;
+mod hair;
 #[cfg(not(hairis_one))]
 mod hits;
 mod math;

@@ -17,5 +17,6 @@ pub mod sequence;
 pub mod shard;
 pub mod stats;
 pub mod table;
+pub mod terminal;
 
 pub use hairis_program::{error, files, interrupt, program};

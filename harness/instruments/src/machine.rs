@@ -68,6 +68,20 @@ impl Machine {
         }
     }
 
+    /// Returns processor and cores for a sentence, with a warning if the build is not optimised.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let warning = if self.debug_assertions {
+            "; a build with debug assertions, whose times mean nothing"
+        } else {
+            ""
+        };
+        format!(
+            "{}, {} logical cores{warning}",
+            self.cpu, self.logical_cores
+        )
+    }
+
     /// Returns one line for the captions of tables: processor, cores, system, compiled features, compiler and commit.
     #[must_use]
     pub fn summary(&self) -> String {

@@ -2,14 +2,16 @@
 
 use crate::error::Error;
 use crate::files::{whole, writable};
-use crate::markup::escape;
+use crate::markup::{self, escape};
 #[cfg(feature = "png")]
 use crate::plot::png;
 use crate::table::Table;
+use crate::terminal::wrapped;
 use rayon::prelude::*;
 use std::fs;
 use std::io::Write;
 use std::path::Path;
+use unicode_width::UnicodeWidthStr as _;
 
 const STYLE: &str = include_str!("report/style.css");
 /// Name of the page's file.
@@ -134,6 +136,38 @@ impl Section {
 }
 
 impl Report {
+    /// Returns the head of the page as lines of text for terminals: title, verdicts, and where the files are, in at most `width` columns.
+    #[must_use]
+    pub fn headline(&self, width: usize, files: &str) -> String {
+        let plain = |text: &str| markup::clean(&pieces(text).concat());
+        let subtitle = wrapped(&plain(&self.subtitle), width, "");
+        let files = ["Report".to_owned(), files.to_owned()];
+        let verdicts = self
+            .verdicts
+            .iter()
+            .map(|verdict| verdict.each_ref().map(|text| plain(text)));
+        let all: Vec<[String; 2]> = verdicts.chain([files]).collect();
+        // The names stand in a column of their own where that leaves room for sentences.
+        let names = all.iter().map(|[name, _]| name.width()).max().unwrap_or(0) + 2;
+        let (names, gap) = if 3 * names <= width {
+            (names, "")
+        } else {
+            (2, ": ")
+        };
+        let indent = " ".repeat(names);
+        let mut text = format!(
+            "{}\n{subtitle}\n\n",
+            wrapped(&plain(&self.title), width, "")
+        );
+        for [name, sentence] in all {
+            let pad = " ".repeat(names.saturating_sub(name.width()));
+            let pad = if gap.is_empty() { &pad } else { gap };
+            text += &wrapped(&format!("{name}{pad}{sentence}"), width, &indent);
+            text.push('\n');
+        }
+        text
+    }
+
     /// Returns the page as HTML, with its style and its figures included.
     #[must_use]
     pub fn html(&self) -> String {
@@ -268,10 +302,8 @@ pub fn literal(text: &str) -> String {
     text.replace('\\', "\\\\").replace('`', "\\`")
 }
 
-/// Escapes a text and sets parts between pairs of `` ` `` as code; numbers stay on one line with their unit. A mark behind a backslash
-/// is itself: see [`literal`].
-fn inline(text: &str) -> String {
-    // Text and code in turns.
+/// Returns text and code in turns, which `` ` `` marks divide. A mark behind a backslash is itself: see [`literal`].
+fn pieces(text: &str) -> Vec<String> {
     let mut pieces = vec![String::new()];
     let mut rest = text.chars().peekable();
     while let Some(c) = rest.next() {
@@ -289,6 +321,11 @@ fn inline(text: &str) -> String {
     {
         *piece += &format!("`{last}");
     }
+    pieces
+}
+
+/// Escapes a text and sets parts between pairs of `` ` `` as code; numbers stay on one line with their unit.
+fn inline(text: &str) -> String {
     let set = |(place, piece): (usize, &String)| {
         let piece = escape(piece);
         if place.is_multiple_of(2) {
@@ -297,6 +334,6 @@ fn inline(text: &str) -> String {
             format!("<code>{piece}</code>")
         }
     };
-    let html: String = pieces.iter().enumerate().map(set).collect();
+    let html: String = pieces(text).iter().enumerate().map(set).collect();
     html.replace(" %", "\u{a0}%").replace(" ns", "\u{a0}ns")
 }

@@ -3,7 +3,9 @@
 pub mod number;
 
 use crate::markup;
+use crate::terminal::wrapped;
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, TableStyle};
+use unicode_width::UnicodeWidthStr as _;
 
 /// Table whose cells are text, formatted once (see [`number`]), so that its forms cannot differ.
 ///
@@ -85,10 +87,58 @@ impl Table {
         self.rows.is_empty()
     }
 
-    /// Formats the table as lines of text, with cells broken so that no line is longer than `width` characters. Without a width, lines
-    /// fit the terminal if standard output is one, and are as long as necessary otherwise.
+    /// Formats the table as lines of text that are no longer than `width` columns, or as long as necessary without a width.
+    ///
+    /// A table that is too wide is broken into parts, each of which begins with the columns of text that name the rows. Cells are broken
+    /// only if a single column does not fit beside those.
     #[must_use]
     pub fn to_text(&self, width: Option<u16>) -> String {
+        let most = width.map_or(usize::MAX, usize::from);
+        let line = |text: &String| {
+            let text = markup::clean(text.trim_end());
+            let text = if width.is_some() {
+                wrapped(&text, most, "")
+            } else {
+                text
+            };
+            text + "\n"
+        };
+        let mut text = line(&self.title);
+        for part in self.parts(most) {
+            text += &self.part(&part, width);
+        }
+        text + &self.notes.iter().map(line).collect::<String>()
+    }
+
+    /// Returns the columns of each part of the table that is at most `most` columns of the terminal wide.
+    fn parts(&self, most: usize) -> Vec<Vec<usize>> {
+        // A cell has a space on either side, and one in front of the next column.
+        let widths: Vec<usize> = (0..self.headers.len())
+            .map(|column| {
+                let cells = self.rows.iter().map(|row| &row[column]);
+                let all = cells.chain([&self.headers[column].0]);
+                all.map(|text| text.width()).max().unwrap_or(0) + 3
+            })
+            .collect();
+        let taken = |part: &[usize]| part.iter().map(|column| widths[*column]).sum::<usize>();
+        let keys: Vec<usize> = (0..self.headers.len())
+            .take_while(|column| !self.headers[*column].1)
+            .collect();
+        let mut parts = vec![keys.clone()];
+        for (column, width) in widths.iter().enumerate().skip(keys.len()) {
+            let last = parts.len() - 1;
+            let is_full = taken(&parts[last]) + width > most.saturating_add(1);
+            if is_full && parts[last].len() > keys.len() {
+                parts.push([&keys[..], &[column]].concat());
+            } else {
+                parts[last].push(column);
+            }
+        }
+        parts
+    }
+
+    /// Formats some of the columns.
+    fn part(&self, columns: &[usize], width: Option<u16>) -> String {
         let line = || LineStyle::none().fill('─').junction('─');
         let mut table = comfy_table::Table::new();
         table.load_style(
@@ -100,29 +150,27 @@ impl Table {
         if let Some(width) = width {
             table.set_width(width);
         }
-        table.set_header(self.headers.iter().map(|(header, _)| markup::clean(header)));
+        table.set_header(
+            columns
+                .iter()
+                .map(|column| markup::clean(&self.headers[*column].0)),
+        );
         table.add_rows(
             self.rows
                 .iter()
-                .map(|row| row.iter().map(|cell| markup::clean(cell))),
+                .map(|row| columns.iter().map(|column| markup::clean(&row[*column]))),
         );
-        for (column, (_, is_number)) in table.column_iter_mut().zip(&self.headers) {
-            column.set_cell_alignment(if *is_number {
+        for (shown, column) in table.column_iter_mut().zip(columns) {
+            shown.set_cell_alignment(if self.headers[*column].1 {
                 CellAlignment::Right
             } else {
                 CellAlignment::Left
             });
         }
-        let body = table.to_string();
-        let mut text = String::new();
-        for line in [&self.title, &body]
-            .into_iter()
-            .chain(&self.notes)
-            .flat_map(|part| part.lines())
-        {
-            text += &format!("{}\n", markup::clean(line).trim_end());
-        }
-        text
+        let text = table.to_string();
+        text.lines()
+            .map(|line| format!("{}\n", line.trim_end()))
+            .collect()
     }
 
     /// Formats the table as HTML, in a box of its own that scrolls sideways.

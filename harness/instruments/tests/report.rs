@@ -172,3 +172,28 @@ fn reports_that_cannot_be_written_are_refused() {
 fn an_empty_report_is_a_page() {
     well_formed(&Report::default().html()).expect("the page nests");
 }
+
+#[test]
+fn the_head_keeps_to_the_width_of_a_terminal() {
+    let verdict = |name: &str| {
+        let sentence = "`matched` takes ".to_owned() + &"many words ".repeat(20);
+        [name.to_owned(), sentence]
+    };
+    let report = Report {
+        title: "Is the report as narrow as the terminal that it is read on?".to_owned(),
+        subtitle: literal("map `a`.exr"),
+        verdicts: vec![verdict("Speed"), verdict("Under a large area light")],
+        ..Report::default()
+    };
+    for width in [24, 40, 80, 100] {
+        let head = report.headline(width, "out/report.html");
+        let longest = head.lines().map(|line| line.chars().count()).max();
+        assert!(longest <= Some(width), "{width}: {head}");
+        assert!(
+            head.contains("map `a`.exr") && !head.contains("`matched`"),
+            "{head}"
+        );
+        assert!(head.ends_with("out/report.html\n"), "{head}");
+        assert_eq!(head.matches("many").count(), 40, "{head}");
+    }
+}

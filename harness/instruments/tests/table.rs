@@ -73,3 +73,31 @@ fn columns_line_up_and_lines_keep_to_the_width() {
         "no escape sequences get through"
     );
 }
+
+/// Every part of a table that is too wide names its rows, and no cell is lost or broken.
+#[test]
+fn a_table_that_is_too_wide_stands_in_parts() {
+    let mut table = Table::new("Parts")
+        .texts(["row"])
+        .numbers((0..12).map(|k| format!("number {k}")));
+    for row in ["first", "second"] {
+        let cells = (0..12).map(|k| format!("{row}-{k}"));
+        table.push([row.to_owned()].into_iter().chain(cells));
+    }
+    for width in [30, 60, 90] {
+        let text = table.to_text(Some(width));
+        let longest = text.lines().map(|line| line.chars().count()).max();
+        assert!(longest <= Some(usize::from(width)), "{text}");
+        let words = |word: &str| text.split_whitespace().filter(|one| *one == word).count();
+        for k in 0..12 {
+            assert_eq!(
+                [words(&format!("first-{k}")), words(&format!("second-{k}"))],
+                [1, 1],
+                "{text}"
+            );
+        }
+        assert_eq!(words("row"), words("first"), "{text}");
+        assert!(words("row") > 1, "{text}");
+    }
+    assert_eq!(table.to_text(None), table.to_text(WIDE));
+}

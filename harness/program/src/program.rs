@@ -13,15 +13,29 @@ const THREADS: &str = "RAYON_NUM_THREADS";
 
 /// Parses the command line and calls `work`. Prints an error as one line on standard error, after `name`, and returns its exit code.
 ///
-/// If the command line asks for help or the version, prints that and succeeds without calling `work`.
-pub fn run<F: Parser>(name: &str, work: impl FnOnce(&F) -> Result<(), Error>) -> ExitCode {
-    match flags().and_then(|flags| flags.map_or(Ok(()), |flags| work(&flags))) {
+/// If the command line asks for help or the version, prints that and succeeds without calling `work`. An empty command line asks for
+/// `entrance`, if there is one: what the program can do, and what to try.
+pub fn run<F: Parser>(
+    name: &str,
+    entrance: Option<&str>,
+    work: impl FnOnce(&F) -> Result<(), Error>,
+) -> ExitCode {
+    let result = match entrance {
+        Some(text) if env::args_os().len() < 2 => print(text),
+        _ => asked(work),
+    };
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             say(&format!("{name}: {error}"));
             ExitCode::from(error.exit_code())
         }
     }
+}
+
+/// Parses the flags and calls `work` with them, unless they ask for help.
+fn asked<F: Parser>(work: impl FnOnce(&F) -> Result<(), Error>) -> Result<(), Error> {
+    flags()?.map_or(Ok(()), |flags| work(&flags))
 }
 
 /// Parses the flags; returns `None` after printing the help or the version.
@@ -51,15 +65,15 @@ fn matches(command: Command) -> Result<ArgMatches, clap::Error> {
         .try_get_matches()
 }
 
-/// Returns the first paragraph of clap's message in one line. The usage that follows the paragraph is left to `--help`.
+/// Returns the first paragraph of clap's message in one line, with the name that it takes for the one that was meant. The usage that
+/// follows is left to `--help`.
 fn one_line(message: &str) -> String {
-    let first = message.split("\n\n").next().unwrap_or(message);
-    let words: Vec<&str> = first.split_whitespace().collect();
-    let line = words.join(" ");
-    format!(
-        "{} (see --help)",
-        line.strip_prefix("error: ").unwrap_or(&line)
-    )
+    let in_one = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut parts = message.split("\n\n").map(in_one);
+    let first = parts.next().unwrap_or_default();
+    let line = first.strip_prefix("error: ").unwrap_or(&first);
+    let tip = parts.find_map(|part| Some(format!("; {}", part.strip_prefix("tip: ")?)));
+    format!("{line}{} (see --help)", tip.unwrap_or_default())
 }
 
 /// Prints a remark if the number of threads in the variable `RAYON_NUM_THREADS` is not a number, or exceeds the number of cores.

@@ -15,6 +15,23 @@ use hairis_instruments::error::Error;
 use hairis_instruments::shard::Shard;
 use std::path::PathBuf;
 
+/// What `hairis-render` prints without arguments.
+pub const ENTRANCE: &str = "\
+hairis-render renders hair, and measures on pictures what models and samplers are worth.
+
+  render    a scene, or hair of a file: an EXR file with a PNG beside it
+  figures   samplers on every scene, at equal samples and in equal time: one page
+  fit       the material of the hair in a picture
+  merge     one picture from the parts that several machines have rendered
+
+Try:
+  hairis-render render head --hair blond --spp 16
+  hairis-render render head --model chiang --integrator path --spp 16
+  hairis-render figures --quick
+
+hairis-render COMMAND --help lists the flags of a command.
+";
+
 /// Renders hair to measure scattering models and their samplers on images.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "hairis-render", version, arg_required_else_help = false)]
@@ -273,6 +290,9 @@ pub struct Figures {
     /// Compare the models, too, where --scene is given
     #[arg(long)]
     pub models: bool,
+    /// Print the table of all scenes, and the verdicts on standard error
+    #[arg(long)]
+    pub tables: bool,
     /// Measure shard I of N only; a run without this flag, with what all shards have left in its folder, writes the page
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,

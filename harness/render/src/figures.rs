@@ -17,8 +17,9 @@ use crate::hair::Choice;
 use crate::scenes::Name;
 use hairis_instruments::error::Error;
 use hairis_instruments::interrupt::Interrupt;
-use hairis_instruments::program::print;
+use hairis_instruments::program::{print, say};
 use hairis_instruments::progress::bar;
+use hairis_instruments::terminal::conclude;
 use hairis_materials::files;
 use hairis_variants::ModelId;
 use measure::{Measured, Plan};
@@ -136,7 +137,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         })
         .collect();
     let settings = csv::settings(&plan, flags, &names);
-    let mut all = Vec::new();
+    let (mut all, mut written) = (Vec::new(), None);
     for ((name, map, hair), stem) in scenes.into_iter().zip(names::of_pictures(&titles)) {
         let measured = Measured::render(name, map, &hair, &plan, flags.seed, &store, &step)?;
         if flags.shard.is_some() {
@@ -145,14 +146,14 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         measured.write_pictures(&flags.out, &stem)?;
         all.push(measured);
         // Write after every scene, so that a run that is stopped leaves a page.
-        page::write(&all, &[], &plan, flags, &flags.out)?;
+        written = Some(page::write(&all, &[], &plan, flags, &flags.out)?);
         csv::write(&all, &[], &settings, &flags.out)?;
     }
     let mut compared = Vec::new();
     for name in presets {
         compared.push(Preset::render(name, &plan, flags.seed, &store, &step)?);
         if flags.shard.is_none() {
-            page::write(&all, &compared, &plan, flags, &flags.out)?;
+            written = Some(page::write(&all, &compared, &plan, flags, &flags.out)?);
             csv::write(&all, &compared, &settings, &flags.out)?;
         }
     }
@@ -163,23 +164,19 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
             store.folder().display()
         ));
     }
-    let mut lines = String::new();
-    for measured in &all {
-        let (sentence, visible) = (verdict::sentence(measured), verdict::visible(measured));
-        lines.push_str(&format!("{}: {sentence} {visible}\n", measured.title()));
-    }
     if store.resumed() > 0 {
-        lines.push_str(&format!(
-            "{} measurements are of a run that was stopped\n",
+        say(&format!(
+            "{} measurements are of a run that was stopped",
             store.resumed()
         ));
     }
     store.remove();
-    lines.push_str(&format!(
-        "wrote {}\n",
-        flags.out.join("report.html").display()
-    ));
-    print(lines)
+    let Some((report, table)) = written else {
+        return Ok(());
+    };
+    let page = flags.out.join("report.html");
+    let tables = flags.tables.then_some(core::slice::from_ref(&table));
+    conclude(&report, &page.display().to_string(), tables)
 }
 
 /// Sets values of the hair, and adds the assignments to its name.

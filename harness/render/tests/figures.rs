@@ -242,7 +242,7 @@ fn hair_of_any_model_is_measured_with_its_own_samplers() {
     let Command::Figures(flags) = Args::parse_from(["hairis-render", "figures"]).command else {
         panic!("the flags of figures")
     };
-    page::write(
+    let (report, table) = page::write(
         core::slice::from_ref(&first),
         &[],
         &TINY,
@@ -250,6 +250,13 @@ fn hair_of_any_model_is_measured_with_its_own_samplers() {
         folder.path(),
     )
     .expect("written");
+    let head = report.headline(80, "report.html");
+    assert!(head.contains("area-head (mine)"), "{head}");
+    assert!(
+        head.lines().all(|line| line.chars().count() <= 80),
+        "{head}"
+    );
+    assert!(!table.is_empty());
     let page = std::fs::read_to_string(folder.path().join("report.html")).expect("written");
     assert!(page.contains("relMSE × time, relative to published"));
     assert!(!page.contains("matched"), "{page}");

@@ -4,5 +4,5 @@ use hairis_program::program;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    program::run("hairis", hairis_shader::run)
+    program::run("hairis", None, hairis_shader::run)
 }

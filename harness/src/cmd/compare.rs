@@ -1,18 +1,18 @@
-//! `hairis compare`: runs the comparison, prints its tables, and writes `compare.json`, `report.html` and
+//! `hairis compare`: runs the comparison, prints its verdicts, and writes `compare.json`, `report.html` and
 //! `figures/`.
 
-use super::{environment, print_tables, report_failures};
+use super::{environment, report_failures};
 use crate::args::Compare;
 use crate::compare::{self, CompareSettings};
 use crate::materials;
 use hairis_instruments::error::Error;
 use hairis_instruments::files::{writable, write_json};
-use hairis_instruments::program::say;
 use hairis_instruments::progress::{share_bar, show_share};
 use hairis_instruments::report::Report;
+use hairis_instruments::terminal::conclude;
 use std::fs;
 
-/// Runs the comparison, writes its files and prints its tables.
+/// Runs the comparison, writes its files and prints its verdicts, or its tables.
 ///
 /// # Errors
 ///
@@ -44,8 +44,10 @@ pub fn run(flags: &Compare) -> Result<(), Error> {
     bar.finish_and_clear();
 
     write_json(&json, &comparison)?;
-    compare::report(&comparison).write(&flags.out, "compare")?;
-    print_tables(compare::summary_tables(&comparison).iter(), &page)?;
-    say(&format!("wrote {} and {}", page.display(), json.display()));
+    let report = compare::report(&comparison);
+    report.write(&flags.out, "compare")?;
+    let files = format!("{}, and all figures in {}", page.display(), json.display());
+    let tables = flags.tables.then(|| compare::summary_tables(&comparison));
+    conclude(&report, &files, tables.as_deref())?;
     report_failures(&comparison.failures())
 }

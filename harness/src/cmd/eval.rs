@@ -9,11 +9,16 @@ mod lines;
 mod request;
 
 use crate::args::{CodePath, Eval};
+use crate::materials::find_model;
 use answer::{answers, block_len};
 use hairis_instruments::error::Error;
+use hairis_instruments::program::{print, say};
+use hairis_materials::material::values_json;
+use hairis_variants::ModelId;
 use lines::Lines;
 use request::Request;
-use std::io::{self, BufReader, BufWriter, ErrorKind, Read, Write};
+use serde_json::{Value, json};
+use std::io::{self, BufReader, BufWriter, ErrorKind, IsTerminal as _, Read, Write};
 
 const BUFFER: usize = 1 << 16;
 
@@ -26,9 +31,52 @@ const BUFFER: usize = 1 << 16;
 /// - [`Error::Malformed`] if any line was rejected, after all others were answered.
 /// - [`Error::Read`] or [`Error::Write`] if a stream failed.
 pub fn run(flags: &Eval) -> Result<(), Error> {
+    if let Some(model) = &flags.example {
+        return print(format!("{}\n", example(find_model("--example", model)?)));
+    }
+    if io::stdin().is_terminal() {
+        let example = example(ModelId::Gaussian);
+        say("reads one request per line of standard input, until Ctrl-D; this is one to paste:");
+        say(&example.to_string());
+    }
     let input = BufReader::with_capacity(BUFFER, io::stdin().lock());
     let output = BufWriter::with_capacity(BUFFER, io::stdout().lock());
     stream(flags.path, input, output)
+}
+
+/// Returns a request for the value of a model's first preset.
+fn example(model: ModelId) -> Value {
+    let (_, values) = model.presets().next().expect("every model has presets");
+    let mut params = values_json(&values);
+    params
+        .as_object_mut()
+        .into_iter()
+        .flatten()
+        .for_each(|(_, value)| shorten(value));
+    let mut request = json!({
+        "model": model.name(),
+        "params": params,
+        "wo": [0.28, 0.576, 0.768],
+        "wi": [0.0, 0.6, -0.8],
+    });
+    if model.is_near_field() {
+        request["h"] = json!(0.3);
+    }
+    request
+}
+
+/// Writes numbers in as few digits as give the same number in single precision.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "they were in single precision"
+)]
+fn shorten(value: &mut Value) {
+    if let Value::Array(values) = value {
+        values.iter_mut().for_each(shorten);
+    } else if let Some(number) = value.as_f64() {
+        let short = (number as f32).to_string().parse::<f64>();
+        *value = json!(short.unwrap_or(number));
+    }
 }
 
 /// Answers the requests of `input` on `output`, as [`run`] does for the standard streams.

@@ -11,6 +11,7 @@ use hairis::HairParams;
 use hairis_instruments::plot::{Axis, Bar, Series, bars, lines};
 use hairis_instruments::report::Drawing;
 use hairis_instruments::sequence::{SequenceKind, XiSource};
+use hairis_instruments::stats::Estimate;
 use hairis_variants::{Cauchy, ModelId};
 
 /// Number of points in each panel of the sample distributions.
@@ -46,7 +47,7 @@ pub(super) fn summary(of: &Comparison) -> Drawing {
     .map(|(name, other)| {
         let gains = lights
             .iter()
-            .map(|light| v_gain(of, light, other).unwrap_or(f64::NAN).into());
+            .map(|light| v_gain(of, light, other).unwrap_or(Estimate::UNKNOWN).into());
         (name.to_owned(), gains.collect())
     });
     let title = "Fewer samples than the published sampler on the Gaussian model";

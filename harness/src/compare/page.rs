@@ -1,13 +1,14 @@
 //! Report of a comparison: its verdicts, findings and sections.
 
-use super::query::{Depth, predicted, v_gain};
+use super::query::{Depth, most_efficient, predicted, v_gain};
 use super::{CompareSettings, Comparison, charts, distinct, rays, tables};
 use crate::efficiency::EfficiencyRow;
 use crate::lights::in_words;
 use crate::sampler::Sampler;
-use crate::speed::TimedOp;
+use crate::speed::{SpeedResult, TimedOp};
 use crate::subject::ModelKind;
 use hairis_instruments::report::{Report, Section, literal};
+use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::number;
 
 /// Returns the page with all verdicts, plots and tables of the comparison.
@@ -104,17 +105,23 @@ fn speed_ratio(of: &Comparison, op: TimedOp, model: ModelKind) -> Option<String>
     Some(number::ratio(row.ratio))
 }
 
-/// Returns a verdict for each use case: the case and the sentence.
+/// Returns a verdict for each question: the question in a word or two, and the sentence.
 fn verdicts(of: &Comparison) -> Vec<[String; 2]> {
-    let level = of.speed.detected_level;
-    let mut verdicts = Vec::new();
-    let ratio = |op| speed_ratio(of, op, ModelKind::Gaussian);
-    if let (Some(eval), Some(sample)) = (ratio(TimedOp::EvalPdf), ratio(TimedOp::Sample)) {
-        let sentence = format!(
-            "Eight lanes on {level} evaluate {eval} and sample {sample} as fast as the scalar formulas."
-        );
-        verdicts.push(["Speed".to_owned(), sentence]);
-    }
+    let Comparison { machine, speed, .. } = of;
+    let mut verdicts = vec![[
+        "Machine".to_owned(),
+        format!(
+            "{}; eight lanes on {}, compiled for {}.",
+            machine.in_words(),
+            speed.detected_level,
+            speed.compiled_level
+        ),
+    ]];
+    let speeds = ModelKind::ALL.map(|model| {
+        let sentence = in_times_of_a_port(of, model)?;
+        Some([format!("Speed, {}", model.title()), sentence])
+    });
+    verdicts.extend(speeds.into_iter().flatten());
     for light in &of.efficiency.settings.lights {
         let change =
             |other| v_gain(of, light, other).map_or("an unknown number of".to_owned(), change);
@@ -124,6 +131,14 @@ fn verdicts(of: &Comparison) -> Vec<[String; 2]> {
             "Cauchy takes {cauchy} samples; `matched` in place of `published` takes {matched}."
         );
         verdicts.push([format!("Under {}", in_words(light)), sentence]);
+    }
+    verdicts.extend(which_sampler(of).map(|sentence| ["Sampler".to_owned(), sentence]));
+    if !of.materials.is_empty() {
+        let sentence = format!(
+            "{} materials and views of the flags were measured; the page and `--tables` show them.",
+            of.materials.len()
+        );
+        verdicts.push(["Materials".to_owned(), sentence]);
     }
     let largest = number::percent(
         of.agreement
@@ -142,13 +157,84 @@ fn verdicts(of: &Comparison) -> Vec<[String; 2]> {
     verdicts
 }
 
-/// Returns the words for a ratio of variances, as a change in the number of samples.
-fn change(ratio: f64) -> String {
-    match ratio {
-        ratio if ratio >= 2.0 => format!("{} fewer", number::ratio(ratio)),
-        ratio if ratio >= 1.0 => format!("{} fewer", number::percent(1.0 - 1.0 / ratio)),
-        ratio if ratio > 0.5 => format!("{} more", number::percent(1.0 / ratio - 1.0)),
-        ratio => format!("{} as many", number::ratio(1.0 / ratio)),
+/// Says how much faster than a direct port of the formulas each way of calling the kernel is, where every direction has a shading point of
+/// its own.
+fn in_times_of_a_port(of: &Comparison, model: ModelKind) -> Option<String> {
+    let level = of.speed.detected_level;
+    let ways = |op| {
+        let row = |(name, level)| of.speed.row(op, model.name(), name, level);
+        let ways = [
+            ("one lane", "scalar", "one lane"),
+            ("eight lanes", level, "eight lanes"),
+            ("slices of hits", level, "slices"),
+            (
+                "slices of hits, Conserving",
+                level,
+                "slices that conserve energy",
+            ),
+        ];
+        let said = ways.into_iter().filter_map(|(name, level, words)| {
+            Some(format!(
+                "{words} {}",
+                number::ratio(row((name, level))?.ratio)
+            ))
+        });
+        Some(said.collect::<Vec<_>>().join(", ")).filter(|said| !said.is_empty())
+    };
+    Some(format!(
+        "Times as fast as a direct port: to evaluate, {}; to sample, {}.",
+        ways(TimedOp::PointsEval)?,
+        ways(TimedOp::PointsShared)?
+    ))
+}
+
+/// Names the sampler of each model that leaves the least variance after a given time, by light.
+fn which_sampler(of: &Comparison) -> Option<String> {
+    let of_model = |model: ModelKind| {
+        let mut chosen: Vec<(Sampler, Vec<&str>)> = Vec::new();
+        for light in &of.efficiency.settings.lights {
+            let sampler = most_efficient(of, light, model)?;
+            match chosen.iter_mut().find(|(known, _)| *known == sampler) {
+                Some((_, lights)) => lights.push(in_words(light)),
+                None => chosen.push((sampler, vec![in_words(light)])),
+            }
+        }
+        let said = match &chosen[..] {
+            [(sampler, _)] => format!("`{}` under every light", sampler.name()),
+            many => many
+                .iter()
+                .map(|(sampler, lights)| {
+                    format!("`{}` under {}", sampler.name(), lights.join(", "))
+                })
+                .collect::<Vec<_>>()
+                .join("; "),
+        };
+        Some(format!("{} model: {said}", model.title()))
+    };
+    let [gaussian, cauchy] = ModelKind::ALL.map(of_model);
+    Some(format!(
+        "Least variance in equal time, {gaussian}. {cauchy}.",
+        gaussian = gaussian?,
+        cauchy = cauchy?
+    ))
+}
+
+/// Returns the words for a ratio of variances, as a change in the number of samples with its standard error.
+fn change(ratio: Estimate) -> String {
+    let Estimate {
+        value,
+        standard_error,
+    } = ratio;
+    let times = |ratio: f64, error| number::ratio_with_error(ratio, error);
+    let percent =
+        |share: f64, error: f64| format!("{} %", number::with_error(100.0 * share, 100.0 * error));
+    // The error of 1 / ratio.
+    let inverse = standard_error / (value * value);
+    match value {
+        value if value >= 2.0 => format!("{} fewer", times(value, standard_error)),
+        value if value >= 1.0 => format!("{} fewer", percent(1.0 - 1.0 / value, inverse)),
+        value if value > 0.5 => format!("{} more", percent(1.0 / value - 1.0, inverse)),
+        value => format!("{} as many", times(1.0 / value, inverse)),
     }
 }
 
@@ -159,6 +245,7 @@ fn findings(of: &Comparison) -> Vec<String> {
         worse_than_uniform(of),
         rays::finding(of),
         more_speed(of),
+        slower_than_a_port(of),
     ]
     .into_iter()
     .flatten()
@@ -218,4 +305,22 @@ fn more_speed(of: &Comparison) -> Option<String> {
         speed_ratio(of, TimedOp::EvalPdf, ModelKind::Cauchy)?,
         speed_ratio(of, TimedOp::PointsMixed, ModelKind::Gaussian)?
     ))
+}
+
+/// Lists the calls on one lane that take longer than the formulas, and says why they may.
+fn slower_than_a_port(of: &Comparison) -> Option<String> {
+    let is_slower = |row: &&SpeedResult| row.contender == "one lane" && row.ratio_q3 < 1.0;
+    let named = of.speed.rows.iter().filter(is_slower).map(|row| {
+        let ratio = number::ratio(row.ratio);
+        format!("{} of {} ({ratio})", row.op.label(), row.model)
+    });
+    let named: Vec<_> = named.collect();
+    (!named.is_empty()).then(|| {
+        format!(
+            "Where is one lane slower than the formulas? In {}. A call on one lane has no branches, so that it has the bits of \
+             eight lanes: it computes every lobe's direction where the formulas follow the lobe that was drawn, and its \
+             elementary functions are those of all platforms.",
+            named.join(", ")
+        )
+    })
 }

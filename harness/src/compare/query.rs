@@ -5,6 +5,7 @@ use crate::efficiency::EfficiencyRow;
 use crate::sampler::Sampler;
 use crate::subject::ModelKind;
 use hairis_instruments::sequence::SequenceKind;
+use hairis_instruments::stats::Estimate;
 
 /// Extent of a set of tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,22 +19,48 @@ pub(super) enum Depth {
 /// Inclination of the viewer in the verdicts, degrees.
 pub(super) const THETA_O_DEG: f64 = 45.0;
 
-/// Returns V of the published sampler on the Gaussian model over V of another estimator, seen from [`THETA_O_DEG`]. V is as measured if
-/// enough samples hit the light, and as predicted otherwise.
-pub(super) fn v_gain(of: &Comparison, light: &str, other: (ModelKind, Sampler)) -> Option<f64> {
+/// Returns the rows of a light that are seen from [`THETA_O_DEG`], with independent numbers.
+fn rows<'a>(of: &'a Comparison, light: &'a str) -> impl Iterator<Item = &'a EfficiencyRow> {
+    of.efficiency.rows.iter().filter(move |row| {
+        (row.sequence, row.theta_o_deg) == (SequenceKind::Independent, THETA_O_DEG)
+            && row.light == light
+    })
+}
+
+/// Returns V of a row: as measured if enough samples hit the light, and as predicted otherwise.
+fn v(row: &EfficiencyRow) -> Estimate {
+    if row.tested {
+        row.v
+    } else {
+        Estimate::exact(predicted(row, row.sampler))
+    }
+}
+
+/// Returns V of the published sampler on the Gaussian model over V of another estimator, seen from [`THETA_O_DEG`].
+pub(super) fn v_gain(
+    of: &Comparison,
+    light: &str,
+    other: (ModelKind, Sampler),
+) -> Option<Estimate> {
     let v = |estimator| {
-        let row = of.efficiency.rows.iter().find(|row| {
-            (row.model, row.sampler) == estimator
-                && (row.sequence, row.theta_o_deg) == (SequenceKind::Independent, THETA_O_DEG)
-                && row.light == light
-        })?;
-        Some(if row.tested {
-            row.v.value
-        } else {
-            predicted(row, row.sampler)
-        })
+        rows(of, light)
+            .find(|row| (row.model, row.sampler) == estimator)
+            .map(v)
     };
-    Some(v((ModelKind::Gaussian, Sampler::Published))? / v(other)?)
+    Some(v((ModelKind::Gaussian, Sampler::Published))?.ratio(&v(other)?))
+}
+
+/// Returns the sampler of a model whose variance after a given time is least under a light, seen from [`THETA_O_DEG`].
+pub(super) fn most_efficient(of: &Comparison, light: &str, model: ModelKind) -> Option<Sampler> {
+    let of_model = rows(of, light).filter(|row| row.model == model);
+    // The time of a sample is 1 / (V efficiency).
+    let efficiency = |row: &EfficiencyRow| {
+        Some(row.efficiency?.value * row.v.value / v(row).value).filter(|value| value.is_finite())
+    };
+    of_model
+        .filter_map(|row| Some((row.sampler, efficiency(row)?)))
+        .max_by(|(_, a), (_, b)| a.total_cmp(b))
+        .map(|(sampler, _)| sampler)
 }
 
 /// Returns V of a sampler as the reference of a row predicts it.

@@ -26,7 +26,7 @@ settings; times.csv and efficiency.csv, which depend on the machine as well. Wit
 Finished cells are kept in DIR/cells-I-of-N.jsonl: the same command continues from there.";
 
 const FIT: &str = "\
-Standard output has the fitted material, as `hairis eval` reads it. Files in DIR: fitted.json, the same; fit.json, the distance by
+Standard output has the fitted material, as `hairis eval` reads it, and standard error the verdicts. Files in DIR: fitted.json, the same; fit.json, the distance by
 view, by lobe and by start; report.html, and its plots in figures/. The same flags give the same values.
 
   hairis fit --from gaussian --preset brown --to cauchy > soft.json
@@ -75,6 +75,9 @@ pub struct Study {
     /// Material to measure likewise, in the JSON of `hairis eval`; may be repeated
     #[arg(long, value_name = "FILE")]
     pub material: Vec<PathBuf>,
+    /// Print the tables, and the verdicts on standard error
+    #[arg(long)]
+    pub tables: bool,
     /// Compute only part I of N (I from 1 to N), for `hairis merge` to join
     #[arg(
         long,
@@ -97,6 +100,9 @@ pub struct Claims {
     /// Seed of everything that is drawn; results but for the timings depend on it alone
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    /// Print the tables, and the verdicts on standard error
+    #[arg(long)]
+    pub tables: bool,
     /// Folder for claims.json; made if missing. A study that finishes in the same folder shows the verdicts in its report
     #[arg(long, value_name = "DIR", default_value = "out/study")]
     pub out: PathBuf,
@@ -119,9 +125,12 @@ pub struct Fit {
     /// Material that is fitted to, in the JSON of `hairis eval`, in place of --from
     #[arg(long, value_name = "FILE")]
     pub material: Option<PathBuf>,
-    /// Fit to many looks of --from in place of one: DIR gets fits.csv, and standard output a table
+    /// Fit to many looks of --from in place of one: DIR gets fits.csv
     #[arg(long, value_enum, conflicts_with_all = ["preset", "material"], requires = "from")]
     pub over: Option<FitOver>,
+    /// Print the table of --over, and its verdicts on standard error
+    #[arg(long, requires = "over")]
+    pub tables: bool,
     /// Name of the model whose parameters are wanted
     #[arg(long, value_name = "NAME")]
     pub to: String,
@@ -179,6 +188,9 @@ pub struct Merge {
     /// Folders that hold the parts; one may hold several
     #[arg(value_name = "PART_DIR", required = true)]
     pub parts: Vec<PathBuf>,
+    /// Print the tables, and the verdicts on standard error
+    #[arg(long)]
+    pub tables: bool,
     /// Environment light of the parts, to time its look-up [default: the procedural sky if the parts used it, else no times]
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,

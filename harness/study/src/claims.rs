@@ -32,7 +32,7 @@ pub mod tails;
 pub mod uniform;
 
 pub use claim::{Claim, Figure, Origin, Role, Side, Threshold, Verdict};
-pub use tables::tables;
+pub use tables::{report, tables};
 
 use crate::study::part::Header;
 use crate::study::{Cell, Grid, Plan, Size};

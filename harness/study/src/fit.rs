@@ -24,7 +24,7 @@ mod rules;
 pub mod variables;
 
 pub(crate) use over::value_columns;
-pub use over::{Refit, columns, hair_of, refits, table};
+pub use over::{Refit, columns, hair_of, refits, table, verdicts};
 pub use points::Points;
 pub use residual::{Residual, residuals};
 pub use rules::{RULES, first_start, rules};

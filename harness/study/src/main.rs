@@ -6,5 +6,5 @@ use hairis_study::cmd;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    program::run("hairis", |args: &Args| cmd::run(&args.command))
+    program::run("hairis", None, |args: &Args| cmd::run(&args.command))
 }

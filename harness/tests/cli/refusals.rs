@@ -1,7 +1,10 @@
 //! Rejection of bad input, line by line, and the messages that name the field at fault.
 
 use super::{PATHS, eval, good, names, run};
+use clap::CommandFactory as _;
 use core::f64::consts::{FRAC_PI_2, PI};
+use hairis_harness::args::Args;
+use hairis_variants::ModelId;
 use serde_json::{Value, json};
 use std::fs;
 
@@ -329,7 +332,7 @@ fn limits_written_in_double_precision_are_accepted() {
 #[test]
 fn bad_flags_are_refused_in_one_line() {
     let cases: [&[&str]; 4] = [
-        &[],
+        &["eval", "--example", "soft"],
         &["evaluate"],
         &["eval", "--path", "gpu"],
         &["eval", "--paths", "x8"],
@@ -347,6 +350,65 @@ fn bad_flags_are_refused_in_one_line() {
             "{args:?}: {:?}",
             run.err
         );
+    }
+}
+
+#[test]
+fn the_name_that_was_meant_is_named() {
+    for (args, meant) in [
+        (&["compar"][..], "'compare'"),
+        (&["compare", "--quik"], "'--quick'"),
+        (&["eval", "--path", "scaler"], "'scalar'"),
+    ] {
+        let error = &run(args, b"").err[0];
+        assert!(
+            error.contains(meant) && error.contains("similar"),
+            "{error}"
+        );
+    }
+}
+
+/// Without arguments, the program says what it can do, and what it proposes works.
+#[test]
+fn an_empty_command_line_is_answered() {
+    let run = run(&[], b"");
+    assert_eq!((run.code, run.err.len()), (Some(0), 0), "{:?}", run.err);
+    assert!(run.out.len() <= 20, "{:?}", run.out);
+    assert!(
+        run.out.iter().all(|line| line.chars().count() <= 100),
+        "{:?}",
+        run.out
+    );
+    for command in Args::command().get_subcommands() {
+        let name = command.get_name();
+        assert!(
+            run.out.iter().any(|line| line.contains(name)),
+            "{name}: {:?}",
+            run.out
+        );
+    }
+}
+
+#[test]
+fn the_example_of_every_model_is_answered() {
+    for model in ModelId::defaults_of_names() {
+        let example = run(&["eval", "--example", model.name()], b"");
+        assert_eq!(
+            (example.code, example.out.len()),
+            (Some(0), 1),
+            "{:?}",
+            example.err
+        );
+        for path in PATHS {
+            let answer = run(&["eval", "--path", path], example.out[0].as_bytes());
+            let pdf = answer.json()[0]["pdf"].as_f64();
+            assert!(
+                pdf.is_some_and(|pdf| pdf > 0.0),
+                "{}: {:?}",
+                model.name(),
+                answer.out
+            );
+        }
     }
 }
 

@@ -2,9 +2,11 @@
 
 >>> import matplotlib; matplotlib.use("agg")
 >>> import hairis.plot
+>>> axes = hairis.plot.polar("chiang")
 >>> bsdf = hairis.Material("gaussian", "brown", sampler="matched").prepare((0.5, 0.75**0.5, 0.0))
->>> axes = hairis.plot.polar(bsdf)
 >>> axes = hairis.plot.sphere(bsdf)
+
+A model by its name, or a material, is seen from 30 degrees of inclination at azimuth 0, and at h = 0.3 if it is of the near field.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._hairis import Bsdf
+from ._hairis import Bsdf, Material
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,6 +31,13 @@ def _directions(theta: NDArray[Any], phi: NDArray[Any]) -> NDArray[np.float32]:
     return np.ascontiguousarray(columns, np.float32)
 
 
+def _bsdf(of: Bsdf | Material | str) -> Bsdf:
+    material = Material(of) if isinstance(of, str) else of
+    if isinstance(material, Bsdf):
+        return material
+    return material.prepare((0.5, 0.75**0.5, 0.0), 0.3 if material.near_field else 0.0)
+
+
 def _axes(axes: Axes | None, **arguments: Any) -> Axes:
     if axes is not None:
         return axes
@@ -38,13 +47,15 @@ def _axes(axes: Axes | None, **arguments: Any) -> Axes:
     return made
 
 
-def polar(bsdf: Bsdf, theta: float | None = None, *, count: int = 1024, axes: Axes | None = None) -> Axes:
+def polar(
+    of: Bsdf | Material | str, theta: float | None = None, *, count: int = 1024, axes: Axes | None = None
+) -> Axes:
     """Draws each lobe and their sum as a polar plot over the azimuth of `wi`, on a logarithmic scale.
 
     Parameters
     ----------
-    bsdf : Bsdf
-        Material at a hit.
+    of : Bsdf, Material or str
+        Material at a hit, a material, or a model by its name.
     theta : float, optional
         Inclination of `wi` in radians, in (-pi/2, pi/2). Without it, the inclination at which S times the cosine is largest.
     count : int
@@ -58,6 +69,7 @@ def polar(bsdf: Bsdf, theta: float | None = None, *, count: int = 1024, axes: Ax
         The radius is the luminance of S times the cosine, per steradian, over four decades. The angle is the azimuth of `wi`, in
         radians.
     """
+    bsdf = _bsdf(of)
     axes = _axes(axes, projection="polar")
     phi = np.linspace(-np.pi, np.pi, count)
     if theta is None:
@@ -80,13 +92,13 @@ def polar(bsdf: Bsdf, theta: float | None = None, *, count: int = 1024, axes: Ax
     return axes
 
 
-def sphere(bsdf: Bsdf, *, resolution: int = 256, axes: Axes | None = None) -> Axes:
+def sphere(of: Bsdf | Material | str, *, resolution: int = 256, axes: Axes | None = None) -> Axes:
     """Draws the BSDF as a map over the sphere on a logarithmic scale, with the azimuth across and the inclination up.
 
     Parameters
     ----------
-    bsdf : Bsdf
-        Material at a hit.
+    of : Bsdf, Material or str
+        Material at a hit, a material, or a model by its name.
     resolution : int
         Number of rows of the map, which has twice as many columns.
     axes : matplotlib Axes, optional
@@ -97,6 +109,7 @@ def sphere(bsdf: Bsdf, *, resolution: int = 256, axes: Axes | None = None) -> Ax
     matplotlib Axes
         The colour is log10 of the luminance of S, per steradian, over six decades. Angles are in degrees.
     """
+    bsdf = _bsdf(of)
     axes = _axes(axes)
     theta = (np.arange(resolution) + 0.5) / resolution * np.pi - np.pi / 2
     phi = (np.arange(2 * resolution) + 0.5) / (2 * resolution) * 2 * np.pi - np.pi

@@ -6,6 +6,8 @@ import copy
 import doctest
 import json
 import pickle
+import subprocess
+import sys
 import threading
 from typing import Any, cast
 
@@ -209,3 +211,19 @@ def test_every_call_has_an_example() -> None:
         for name in vars(kind):
             if callable(getattr(kind, name)) and not name.startswith("_"):
                 assert ">>>" in getattr(kind, name).__doc__, name
+
+
+def test_the_module_as_a_program_names_the_models() -> None:
+    run = subprocess.run([sys.executable, "-m", "hairis"], capture_output=True, text=True, check=True)
+    first, *rest = run.stdout.splitlines()
+    assert first.startswith("hairis 0.1.0, eight lanes on ")
+    assert [line.split(":")[0].strip() for line in rest] == list(hairis.models())
+
+
+def test_plots_take_a_model_by_its_name() -> None:
+    import matplotlib
+
+    matplotlib.use("agg")
+    for of in ("chiang", hairis.Material("kajiya-kay", "brown")):
+        assert len(hairis.plot.polar(of, count=64).get_lines()) > 1
+        assert len(hairis.plot.sphere(of, resolution=8).get_images()) == 1

@@ -10,7 +10,7 @@ pub(super) fn directory() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary directory")
 }
 
-fn texel(x: u32, y: u32) -> [f32; 3] {
+fn texel(x: usize, y: usize) -> [f32; 3] {
     [(1 + x) as f32, 0.5 * (1 + y) as f32, 0.25]
 }
 
@@ -18,27 +18,36 @@ fn texel(x: u32, y: u32) -> [f32; 3] {
 fn write(dir: &Path, name: &str) -> PathBuf {
     let path = dir.join(name);
     if name.ends_with("hdr") {
-        let rows = (0..8).flat_map(|y| scan_line(core::array::from_fn(|x| texel(x as u32, y))));
+        let rows = (0..8).flat_map(|y| scan_line(core::array::from_fn(|x| texel(x, y))));
         let bytes = b"#?RADIANCE\n\n-Y 8 +X 16\n".iter().copied().chain(rows);
         std::fs::write(&path, bytes.collect::<Vec<u8>>()).expect("written");
     } else {
-        write_rgb_file(&path, 16, 8, |x, y| texel(x as u32, y as u32).into()).expect("written");
+        write_rgb_file(&path, 16, 8, |x, y| texel(x, y).into()).expect("written");
     }
     path
 }
 
 /// Returns a scan line of Radiance HDR, each of whose components is one stretch of literal bytes.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "mantissas and exponents are bytes"
+)]
 fn scan_line(pixels: [[f32; 3]; 16]) -> Vec<u8> {
     // The largest channel has a mantissa from 128 to 255.
-    let exponents = pixels.map(|rgb| rgb.into_iter().fold(0.0, f32::max).log2().floor() as i32 + 1);
-    let mut line = vec![2, 2, 0, 16];
-    for channel in 0..3 {
-        line.push(16);
-        line.extend((0..16).map(|x| (pixels[x][channel] * 2_f32.powi(8 - exponents[x])) as u8));
-    }
-    line.push(16);
-    line.extend(exponents.map(|exponent| (exponent + 128) as u8));
-    line
+    let rgbe = pixels.map(|rgb| {
+        let exponent = rgb.into_iter().fold(0.0, f32::max).log2().floor() + 1.0;
+        let [r, g, b] = rgb.map(|x| (x * (8.0 - exponent).exp2()) as u8);
+        [r, g, b, (exponent + 128.0) as u8]
+    });
+    let component = |channel| {
+        let bytes = rgbe.iter().map(move |pixel: &[u8; 4]| pixel[channel]);
+        core::iter::once(16).chain(bytes)
+    };
+    [2, 2, 0, 16]
+        .into_iter()
+        .chain((0..4).flat_map(component))
+        .collect()
 }
 
 #[test]
@@ -48,7 +57,7 @@ fn both_formats_read_back() {
         let map = Environment::load(write(dir.path(), name)).expect(name);
         assert_eq!((map.size(), map.name()), ([16, 8], name));
         assert!(map.notes().is_empty());
-        for (x, y) in [(0, 0), (15, 7), (5, 2)] {
+        for (x, y) in [(0_u8, 0_u8), (15, 7), (5, 2)] {
             let (theta, phi) = (
                 PI * (f64::from(y) + 0.5) / 8.0,
                 2.0 * PI * ((f64::from(x) + 0.5) / 16.0 - 0.5),
@@ -64,7 +73,7 @@ fn both_formats_read_back() {
             } else {
                 0.0
             };
-            for (got, want) in got.iter().zip(texel(x, y)) {
+            for (got, want) in got.iter().zip(texel(x.into(), y.into())) {
                 assert!(
                     (got - f64::from(want)).abs() <= bound,
                     "{name} ({x}, {y}): {got} {want}"

@@ -15,6 +15,7 @@ use hairis_instruments::plot::{Axis, Series, lines};
 use hairis_instruments::program::{print, say};
 use hairis_instruments::progress::{share_bar, show_share};
 use hairis_instruments::table::{Table, number};
+use hairis_instruments::terminal;
 use hairis_materials::material::{in_place_of, values_json};
 use hairis_variants::Field;
 use image::{Rgb, RgbImage};
@@ -87,7 +88,7 @@ pub(super) fn run(flags: &Flags) -> Result<(), Error> {
     let target = target.picture();
     let exposure = flags.exposure.unwrap_or_else(|| picture::exposure(&target));
     write_pictures(&[before, after, target], exposure, &pictures)?;
-    let text = table(&found).to_text(None);
+    let text = table(&found).to_text(terminal::columns());
     print(format!("{text}wrote {}\n", material.display()))
 }
 

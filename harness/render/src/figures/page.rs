@@ -22,7 +22,7 @@ use hairis_instruments::table::{Table, number};
 use std::io::Write as _;
 use std::path::Path;
 
-/// Writes `report.html` with everything that is measured so far.
+/// Writes `report.html` with everything that is measured so far, and returns the page with its table of all scenes.
 ///
 /// # Errors
 ///
@@ -33,13 +33,14 @@ pub fn write(
     plan: &Plan,
     flags: &Figures,
     out: &Path,
-) -> Result<(), Error> {
+) -> Result<(Report, Table), Error> {
     let path = out.join("report.html");
     let page = page(all, presets, plan, flags).map_err(|source| Error::Output {
         path: path.clone(),
         source,
     })?;
-    whole(&path, |out| out.write_all(page.html().as_bytes()))
+    whole(&path, |out| out.write_all(page.html().as_bytes()))?;
+    Ok((page, summary(all)))
 }
 
 fn page(
@@ -64,10 +65,13 @@ fn page(
         rectangle_sampling,
         ..
     } = plan;
-    let mut verdicts = vec![[
-        "Where the sampler does not matter".to_owned(),
-        verdict::scenes(all),
-    ]];
+    let mut verdicts = vec![
+        ["Machine".to_owned(), machine.in_words() + "."],
+        [
+            "Where the sampler does not matter".to_owned(),
+            verdict::scenes(all),
+        ],
+    ];
     verdicts.extend(
         all.iter()
             .map(|measured| [literal(&measured.title()), headline(measured)]),

@@ -1,7 +1,8 @@
-//! Tables of the claims: one for each claim, then one of all claims with their verdicts.
+//! Tables of the claims: one for each claim, then one of all claims with their verdicts; and the verdicts in a few lines.
 
-use super::Claims;
-use super::claim::{Claim, Figure, Origin, Role, Side, Threshold};
+use super::claim::{Claim, Figure, Origin, Role, Side, Threshold, Verdict};
+use super::{Claims, Settings};
+use hairis_instruments::report::Report;
 use hairis_instruments::table::{Table, number};
 
 /// Returns one table per claim, then the summary with all verdicts.
@@ -12,6 +13,41 @@ pub fn tables(of: &Claims) -> Vec<Table> {
         .map(of_claim)
         .chain([summary(of)])
         .collect()
+}
+
+/// Returns the verdicts as the head of a report, which has no page of its own: that of a study shows them.
+#[must_use]
+pub fn report(of: &Claims) -> Report {
+    let Settings {
+        seed, quick, cells, ..
+    } = of.settings;
+    let flag = if quick { " --quick" } else { "" };
+    let judged = |verdict: Verdict, said: &dyn Fn(&Claim) -> String| {
+        let claims = of.claims.iter().filter(|claim| claim.verdict == verdict);
+        let claims: Vec<String> = claims.map(said).collect();
+        let count = claims.len();
+        (count > 0).then(|| {
+            let name = format!("{count} {}", verdict.name());
+            [name, claims.join("; ") + "."]
+        })
+    };
+    let id = |claim: &Claim| claim.id.to_owned();
+    let with_limits = |claim: &Claim| format!("{} ({})", claim.id, claim.threshold.limits);
+    let machine = ["Machine".to_owned(), of.machine.in_words() + "."];
+    let verdicts = [
+        Some(machine),
+        judged(Verdict::Holds, &id),
+        judged(Verdict::HoldsWithinLimits, &with_limits),
+        judged(Verdict::False, &id),
+    ];
+    Report {
+        title: "The paper's claims: which of them hold?".to_owned(),
+        subtitle: format!(
+            "hairis claims{flag}, seed {seed}: {cells} cells of hair and viewing angle"
+        ),
+        verdicts: verdicts.into_iter().flatten().collect(),
+        ..Report::default()
+    }
 }
 
 fn of_claim(claim: &Claim) -> Table {

@@ -1,18 +1,17 @@
-//! `hairis claims`: computes the paper's claims, prints them, and writes `claims.json`.
+//! `hairis claims`: computes the paper's claims, prints the verdicts, and writes `claims.json`.
 
 use crate::args::Claims;
 use crate::claims;
 use crate::study::Size;
-use hairis_harness::cmd::print_tables;
 use hairis_harness::journal::Journal;
 use hairis_instruments::error::Error;
 use hairis_instruments::files::{writable, write_json};
 use hairis_instruments::interrupt::Interrupt;
-use hairis_instruments::program::say;
 use hairis_instruments::progress::{share_bar, show_share};
+use hairis_instruments::terminal::conclude;
 use std::fs;
 
-/// Computes the claims of the paper, prints their tables and writes `claims.json`. Continues an interrupted run.
+/// Computes the claims of the paper, prints the verdicts, or all tables, and writes `claims.json`. Continues an interrupted run.
 ///
 /// # Errors
 ///
@@ -33,7 +32,7 @@ pub fn run(flags: &Claims) -> Result<(), Error> {
 
     write_json(&path, &claims)?;
     journal.remove();
-    print_tables(claims::tables(&claims).iter(), &path)?;
-    say(&format!("wrote {}", path.display()));
-    Ok(())
+    let tables = flags.tables.then(|| claims::tables(&claims));
+    let head = claims::report(&claims);
+    conclude(&head, &path.display().to_string(), tables.as_deref())
 }

@@ -5,14 +5,14 @@ use crate::fit::page::Shown;
 use crate::fit::{self, FitConfig, Look, Norm, Points, residuals};
 use crate::study::Grid;
 use core::f64::consts::FRAC_PI_2;
-use hairis_harness::cmd::print_tables;
 use hairis_harness::materials::{self, NamedMaterial, find_model};
 use hairis_instruments::error::Error;
 use hairis_instruments::files::{whole, writable, write_json};
 use hairis_instruments::machine;
-use hairis_instruments::program::{print, say};
+use hairis_instruments::program::print;
 use hairis_instruments::progress::{Progress, share_bar, show_share};
 use hairis_instruments::report::Report;
+use hairis_instruments::terminal::{conclude, width};
 use hairis_materials::material::{in_place_of, values_json};
 use hairis_variants::{Field, ModelId, Values};
 use serde_json::json;
@@ -100,17 +100,18 @@ pub fn run(flags: &Fit) -> Result<(), Error> {
         before: &before,
         after: &after,
     };
-    shown.report()?.write(&flags.out, "fit")?;
-    say(&shown.sentence());
-    say(&format!(
-        "wrote {} and {}",
-        found_path.display(),
-        page.display()
-    ));
+    let report = shown.report()?;
+    report.write(&flags.out, "fit")?;
+    let files = format!(
+        "{}; the material is in {}",
+        page.display(),
+        found_path.display()
+    );
+    eprint!("{}", report.headline(width(), &files));
     print(format!("{fitted}\n"))
 }
 
-/// Fits to many looks, writes their rows, and prints a table.
+/// Fits to many looks, writes their rows, and prints the verdicts, or their table.
 fn run_over(flags: &Fit, over: FitOver) -> Result<(), Error> {
     let from = find_model("--from", flags.from.as_deref().unwrap_or_default())?;
     let to = find_model("--to", &flags.to)?;
@@ -162,9 +163,15 @@ fn run_over(flags: &Fit, over: FitOver) -> Result<(), Error> {
         looks.len(),
         from.name()
     );
-    print_tables([fit::table(&title, &refits)].iter(), &path)?;
-    say(&format!("wrote {}", path.display()));
-    Ok(())
+    let table = fit::table(&title, &refits);
+    let report = Report {
+        title,
+        subtitle: format!("hairis fit, norm {}", config.norm.name()),
+        verdicts: fit::verdicts(&refits).into(),
+        ..Report::default()
+    };
+    let tables = flags.tables.then_some(core::slice::from_ref(&table));
+    conclude(&report, &path.display().to_string(), tables)
 }
 
 /// Returns the material that is fitted to.

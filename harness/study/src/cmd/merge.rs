@@ -9,7 +9,7 @@ use hairis_instruments::interrupt::Interrupt;
 use hairis_instruments::program::say;
 use std::fs;
 
-/// Joins the parts, writes the same tables as one run, and prints the summary.
+/// Joins the parts, writes the same tables as one run, and prints the verdicts.
 ///
 /// The rows need no environment. The times, which are measured here, need it for the time of its look-up. The parts contain its digest.
 ///
@@ -33,5 +33,11 @@ pub fn run(flags: &Merge) -> Result<(), Error> {
     fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
     check_outputs(&flags.out, study.has_materials())?;
     let environment = is_theirs.then_some(&environment);
-    finish(study, environment, &flags.out, Interrupt::watch())
+    finish(
+        study,
+        environment,
+        &flags.out,
+        Interrupt::watch(),
+        flags.tables,
+    )
 }

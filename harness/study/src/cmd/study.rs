@@ -1,11 +1,11 @@
-//! `hairis study`: runs the study or a part of it. Once the study is complete, prints its summary and writes its tables.
+//! `hairis study`: runs the study or a part of it. Once the study is complete, prints its verdicts and writes its tables.
 
 use crate::args::Study as Flags;
 use crate::difference::Difference;
 use crate::study::output::Study;
 use crate::study::part::{Part, read};
 use crate::study::{self, Plan, Size};
-use hairis_harness::cmd::{environment, print_tables, report_failures};
+use hairis_harness::cmd::{environment, report_failures};
 use hairis_harness::journal::Journal;
 use hairis_harness::materials;
 use hairis_instruments::error::Error;
@@ -15,6 +15,7 @@ use hairis_instruments::program::say;
 use hairis_instruments::progress::{bar, share_bar, show_share};
 use hairis_instruments::report::Report;
 use hairis_instruments::shard::Shard;
+use hairis_instruments::terminal::conclude;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -80,7 +81,13 @@ pub fn run(flags: &Flags) -> Result<(), Error> {
 
     if shard == Shard::WHOLE {
         let study = Study::join(&[(part.path().to_owned(), read(part.path())?)])?;
-        finish(study, Some(&environment), &flags.out, interrupt)
+        finish(
+            study,
+            Some(&environment),
+            &flags.out,
+            interrupt,
+            flags.tables,
+        )
     } else {
         say(&format!(
             "wrote {}; `hairis merge` joins it with the others",
@@ -96,12 +103,13 @@ pub(super) fn check_outputs(out: &Path, has_materials: bool) -> Result<(), Error
     Report::writable(out)
 }
 
-/// Computes how different the models look, measures times, writes the tables and prints the summary.
+/// Computes how different the models look, measures times, writes the tables and prints the verdicts.
 pub(super) fn finish(
     mut study: Study,
     environment: Option<&Environment>,
     out: &Path,
     interrupt: Interrupt,
+    tables: bool,
 ) -> Result<(), Error> {
     let journal = Journal::open(out, "difference", study.header(), interrupt)?;
     let bar = share_bar("refits {wide_bar} {percent:>3}% {elapsed} (left {eta})");
@@ -116,30 +124,17 @@ pub(super) fn finish(
     study.time(environment);
     journal.check()?;
     study.write(out, &difference)?;
-    study
-        .report(&difference, claims(out, &study).as_ref())
-        .write(out, "study")?;
+    let report = study.report(&difference, claims(out, &study).as_ref());
+    report.write(out, "study")?;
     journal.remove();
-    let page = out.join("report.html");
-    let tables = study.summary().into_iter().chain(study.materials());
-    let tables: Vec<_> = tables.chain(difference.tables()).collect();
-    print_tables(tables.iter(), &page)?;
-    let [rows, others @ ..] =
-        ["study", "efficiency", "difference"].map(|name| out.join(name).display().to_string());
-    let parquet = if cfg!(feature = "parquet") {
-        " and .parquet"
-    } else {
-        ""
-    };
-    say(&format!(
-        "wrote {rows}.csv{parquet}, {} as .csv{parquet}, and {rows}.json",
-        others.join(" and ")
-    ));
-    say(&format!("wrote {}", out.join("refitted.csv").display()));
-    if study.has_materials() {
-        say(&format!("wrote {}", out.join("materials.csv").display()));
-    }
-    say(&format!("wrote {} and figures/", page.display()));
+    let tables = tables.then(|| {
+        let tables = study.summary().into_iter().chain(study.materials());
+        tables.chain(difference.tables()).collect::<Vec<_>>()
+    });
+    let [page, rows] =
+        ["report.html", "study.csv"].map(|name| out.join(name).display().to_string());
+    let files = format!("{page}; rows in {rows}, and further tables beside it");
+    conclude(&report, &files, tables.as_deref())?;
     report_failures(&study.failures())
 }
 

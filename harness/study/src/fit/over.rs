@@ -140,6 +140,34 @@ pub(crate) fn value_columns(mut columns: Columns, all: &[Values]) -> Columns {
 /// Name of a distance, and the function that returns it.
 type NamedDistance = (&'static str, fn(&Residual) -> f64);
 
+/// Distances of which medians are told.
+const DISTANCES: [NamedDistance; 3] = [
+    ("L1", |row| row.l1),
+    ("L2", |row| row.l2),
+    ("L1, mean of RGB", |row| row.l1_mean),
+];
+
+/// Returns summaries of a distance at the start and after the fit, over looks and views.
+fn summaries(refits: &[Refit], of: fn(&Residual) -> f64) -> [Summary; 2] {
+    [
+        Summary::of(refits.iter().flat_map(|refit| &refit.before).map(of)),
+        Summary::of(refits.iter().flat_map(|refit| &refit.after).map(of)),
+    ]
+}
+
+/// Returns a verdict for each distance.
+#[must_use]
+pub fn verdicts(refits: &[Refit]) -> [[String; 2]; 3] {
+    DISTANCES.map(|(name, of)| {
+        let [before, after] = summaries(refits, of);
+        let [median, most, from] = [after.median, after.most, before.median].map(number::percent);
+        [
+            name.to_owned(),
+            format!("Median {median} (worst {most}), from {from} at the start."),
+        ]
+    })
+}
+
 /// Returns a table of the medians and the worst of the distances, over looks and views.
 pub fn table(title: &str, refits: &[Refit]) -> Table {
     let mut table = Table::new(title).texts(["distance"]).numbers([
@@ -148,16 +176,8 @@ pub fn table(title: &str, refits: &[Refit]) -> Table {
         "median fitted",
         "worst",
     ]);
-    let figures: [NamedDistance; 3] = [
-        ("L1", |row| row.l1),
-        ("L2", |row| row.l2),
-        ("L1, mean of RGB", |row| row.l1_mean),
-    ];
-    for (name, of) in figures {
-        let [before, after] = [
-            Summary::of(refits.iter().flat_map(|refit| &refit.before).map(of)),
-            Summary::of(refits.iter().flat_map(|refit| &refit.after).map(of)),
-        ];
+    for (name, of) in DISTANCES {
+        let [before, after] = summaries(refits, of);
         let cells = [before.median, before.most, after.median, after.most].map(number::percent);
         table.push([name.to_owned()].into_iter().chain(cells));
     }

@@ -35,13 +35,38 @@ impl Shown<'_> {
         )
     }
 
+    /// Lists the fitted values, with those of the start where they differ.
+    fn changes(&self) -> String {
+        let (start, found) = (&self.start.values, &self.fit.found.values);
+        let fields = found.fields().iter().enumerate();
+        let said = fields
+            .filter(|(index, _)| found.has_at(*index))
+            .map(|(index, field)| {
+                let [before, after] = [start, found].map(|values| {
+                    let entries =
+                        (0..field.kind.width()).map(|place| in_words(values, index, place));
+                    entries.collect::<Vec<_>>().join(" ")
+                });
+                let before = if before == after {
+                    String::new()
+                } else {
+                    format!(" (from {before})")
+                };
+                format!("{} {after}{before}", field.name)
+            });
+        said.collect::<Vec<_>>().join(", ")
+    }
+
     /// Returns the page with all sections.
     pub(crate) fn report(&self) -> Result<Report, Error> {
         let (name, to) = (&self.from.name, self.fit.found.model.name());
         Ok(Report {
             title: format!("{to} fitted to {name}"),
             subtitle: format!("hairis fit, norm {}", self.norm.name()),
-            findings: vec![literal(&self.sentence()) + "."],
+            verdicts: vec![
+                ["Distance".to_owned(), literal(&self.sentence()) + "."],
+                ["Values".to_owned(), self.changes() + "."],
+            ],
             sections: vec![
                 Section::new("Values").tables([self.values(), self.starts()]),
                 Section::new("Residuals")
@@ -63,17 +88,14 @@ impl Shown<'_> {
             if !found.has_at(index) {
                 continue;
             }
-            let of = |values: &Values, place: usize| match field.kind {
-                Kind::Word(_) => values.word(field.name).to_owned(),
-                _ => number::plain(f64::from(values.numbers_at(index)[place]), 4),
-            };
             for place in 0..field.kind.width() {
                 let label = match field.kind {
                     Kind::Numbers(labels) => format!("{} {}", field.name, labels[place]),
                     Kind::Rgb => format!("{} {}", field.name, ["red", "green", "blue"][place]),
                     _ => field.name.to_owned(),
                 };
-                table.push([label, of(start, place), of(found, place)]);
+                let [start, found] = [start, found].map(|values| in_words(values, index, place));
+                table.push([label, start, found]);
             }
         }
         table
@@ -185,5 +207,14 @@ impl Shown<'_> {
             map("map-start", "at the start", before),
             map("map-fitted", "after the fit", after),
         ])
+    }
+}
+
+/// Returns one entry of a value.
+fn in_words(values: &Values, index: usize, place: usize) -> String {
+    let field = &values.fields()[index];
+    match field.kind {
+        Kind::Word(_) => values.word(field.name).to_owned(),
+        _ => number::plain(f64::from(values.numbers_at(index)[place]), 4),
     }
 }

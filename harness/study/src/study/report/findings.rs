@@ -9,21 +9,22 @@ use crate::difference::{Difference, Differences, Summary, Width, albedo_ratio};
 use hairis_harness::lights::{environment, in_words};
 use hairis_harness::sampler::Sampler;
 use hairis_harness::subject::ModelKind;
+use hairis_instruments::machine;
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::number::{self, percent};
 use std::path::Path;
 
 /// Returns the sentences, in the order in which a reader would ask.
 pub(super) fn findings(of: &Study, difference: &Difference) -> Vec<String> {
-    [
-        worth(of),
-        which(of),
-        looks(difference),
-        refitted(of, difference),
-        cost(of),
-        where_not(difference),
-    ]
-    .into()
+    let all = [
+        Some(worth(of)),
+        limit(of).map(|sentence| sentence.trim_start().to_owned()),
+        Some(looks(difference)),
+        Some(refitted(of, difference)),
+        Some(cost(of)),
+        Some(where_not(difference)),
+    ];
+    all.into_iter().flatten().collect()
 }
 
 /// Returns a ratio such as `1.39×`, with its standard error if that is large enough to show.
@@ -128,7 +129,7 @@ fn best(of: &Study, model: ModelKind, light: usize) -> Option<(Vec<Strategy>, Es
     Some((level.map(|(strategy, _)| *strategy).collect(), most))
 }
 
-/// Answers which sampler is best.
+/// Says which sampler is best.
 fn which(of: &Study) -> String {
     let parts = ModelKind::ALL.map(|model| {
         let lights = by_light(of, &|light, light_name| {
@@ -146,16 +147,16 @@ fn which(of: &Study) -> String {
         format!("on the {} model {lights}", model.title())
     });
     format!(
-        "Which sampler? Least variance in equal time, {MANY} samples per shading point, a look-up of the light included where \
-         it was timed (in brackets how many times less than `published`; \"or\": not told apart): {}.{}",
-        parts.join("; "),
-        limit(of).unwrap_or_default()
+        "Least variance in equal time, {MANY} samples per shading point, a look-up of the light included where it was timed (in \
+         brackets how many times less than `published`; \"or\": not told apart): {}.",
+        parts.join("; ")
     )
 }
 
-/// Returns a verdict for each light, and one on the looks: the case and the sentence.
+/// Returns a verdict for each question: the question in a word or two, and the sentence.
 pub(super) fn verdicts(of: &Study, difference: &Difference) -> Vec<[String; 2]> {
-    let mut verdicts = Vec::new();
+    let machine = format!("Times are of {}.", machine!().in_words());
+    let mut verdicts = vec![["Machine".to_owned(), machine]];
     for (light, name) in of.lights().iter().enumerate() {
         let parts = of_told(&|sampler, pair| {
             let gain = of.gain(pair, light)?;
@@ -180,12 +181,18 @@ pub(super) fn verdicts(of: &Study, difference: &Difference) -> Vec<[String; 2]> 
             ]);
         }
     }
+    verdicts.push(["Sampler".to_owned(), which(of)]);
     let [plain, blurred] = l1(difference, Width::Paper).map(|of| percent(of.median));
     let [refitted, _] = l1(difference, Width::Refitted).map(|of| percent(of.median));
     verdicts.push([
         "Looks".to_owned(),
         format!("Cauchy looks {plain} different ({blurred} blurred by 10°), and {refitted} once refitted."),
     ]);
+    let checks = match of.failures().len() {
+        0 => "All checks pass.".to_owned(),
+        failed => format!("{failed} checks failed; the terminal names them."),
+    };
+    verdicts.push(["Accuracy".to_owned(), checks]);
     verdicts
 }
 
