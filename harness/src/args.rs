@@ -4,7 +4,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// What `hairis` prints without arguments.
+/// Text that `hairis` prints without arguments.
 pub const ENTRANCE: &str = "\
 hairis evaluates models of light scattered by hair, and measures what samplers and SIMD are worth.
 

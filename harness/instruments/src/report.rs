@@ -149,7 +149,7 @@ impl Report {
         let all: Vec<[String; 2]> = verdicts.chain([files]).collect();
         // The names stand in a column of their own where that leaves room for sentences.
         let names = all.iter().map(|[name, _]| name.width()).max().unwrap_or(0) + 2;
-        let (names, gap) = if 3 * names <= width {
+        let (names, gap) = if 3 * names + 10 <= width {
             (names, "")
         } else {
             (2, ": ")

@@ -15,7 +15,7 @@ use hairis_instruments::error::Error;
 use hairis_instruments::shard::Shard;
 use std::path::PathBuf;
 
-/// What `hairis-render` prints without arguments.
+/// Text that `hairis-render` prints without arguments.
 pub const ENTRANCE: &str = "\
 hairis-render renders hair, and measures on pictures what models and samplers are worth.
 

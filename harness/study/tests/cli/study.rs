@@ -26,7 +26,7 @@ fn study(dir: &Path, threads: &str, more: &[&str]) -> Run {
 
 /// Runs `hairis study` with the flag `size` into `dir` on `threads` threads.
 fn sized(size: &str, dir: &Path, threads: &str, more: &[&str]) -> Run {
-    let mut args = vec!["study", size, "--out", dir.to_str().unwrap()];
+    let mut args = vec!["study", size, "--tables", "--out", dir.to_str().unwrap()];
     args.extend(more);
     command(&args)
         .env("RAYON_NUM_THREADS", threads)
@@ -37,7 +37,7 @@ fn sized(size: &str, dir: &Path, threads: &str, more: &[&str]) -> Run {
 }
 
 fn merge(out: &Path, parts: &[&Path]) -> Run {
-    let mut args = vec!["merge", out.to_str().unwrap()];
+    let mut args = vec!["merge", "--tables", out.to_str().unwrap()];
     args.extend(parts.iter().map(|part| part.to_str().unwrap()));
     command(&args).stdin(Stdio::null()).output().unwrap().into()
 }

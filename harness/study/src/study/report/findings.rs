@@ -147,8 +147,8 @@ fn which(of: &Study) -> String {
         format!("on the {} model {lights}", model.title())
     });
     format!(
-        "Least variance in equal time, {MANY} samples per shading point, a look-up of the light included where it was timed (in \
-         brackets how many times less than `published`; \"or\": not told apart): {}.",
+        "Least variance in equal time, with a look-up of the light where it was timed (in brackets the gain over `published`; \
+         \"or\": not told apart): {}.",
         parts.join("; ")
     )
 }
@@ -162,22 +162,20 @@ pub(super) fn verdicts(of: &Study, difference: &Difference) -> Vec<[String; 2]> 
             let gain = of.gain(pair, light)?;
             let less = 1.0 - 1.0 / gain.median.value;
             let change = match Sign::of(gain.median) {
-                Sign::Above => format!("{} fewer samples", percent(less)),
-                Sign::Below if less < -1.0 => {
-                    format!("{} as many samples", number::ratio(1.0 - less))
-                }
-                Sign::Below => format!("{} more samples", percent(-less)),
-                Sign::Unsure => "as many samples".to_owned(),
+                Sign::Above => format!("{} fewer", percent(less)),
+                Sign::Below if less < -1.0 => format!("{} as many", number::ratio(1.0 - less)),
+                Sign::Below => format!("{} more", percent(-less)),
+                Sign::Unsure => "as many".to_owned(),
             };
             let [fewer, more] = gain.shares.map(|share| format!("{:.0} %", 100.0 * share));
             Some(format!(
-                "{change} with `{sampler}` (fewer in {fewer} of the cells, more in {more})"
+                "`{sampler}` {change} ({fewer} of cells fewer, {more} more)"
             ))
         });
         if !parts.is_empty() {
             verdicts.push([
                 format!("Under {}", in_words(said(name))),
-                format!("Cauchy takes {}.", listed(&parts)),
+                format!("Samples for Cauchy: {}.", parts.join("; ")),
             ]);
         }
     }

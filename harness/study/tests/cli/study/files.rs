@@ -335,7 +335,7 @@ fn the_report_stands_alone_and_has_every_part() {
     let page = fs::read_to_string(reference().join("report.html")).unwrap();
     let answers = [
         "Is the Cauchy model worth it?",
-        "Which sampler?",
+        "How far can that go?",
         "change in looks?",
         "cost?",
         "Where not?",
@@ -345,6 +345,7 @@ fn the_report_stands_alone_and_has_every_part() {
     }
     for words in [
         "perfect sampling",
+        "Least variance in equal time",
         "look-up of the light",
         "won / undecided / lost",
         "Rays from candidates",
