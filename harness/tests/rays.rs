@@ -1,5 +1,6 @@
 //! Rays against references and closed forms, of determinism, and of times and prices.
 
+use hairis_conformance::cases;
 use hairis_harness::efficiency::{self, Budget, EfficiencyConfig, EfficiencyResult, THETA_O_DEG};
 use hairis_harness::rays::*;
 use hairis_instruments::light::{Environment, Light, Sky};
@@ -121,7 +122,7 @@ fn one_ray_obeys_the_law_of_visibility() {
         .filter(|subject| subject.sampler() == "matched")
         .collect();
     let mut scores = Vec::new();
-    for row in rows_of(&config(map, 1024), &subjects, references) {
+    for row in rows_of(&config(map, cases(1024)), &subjects, references) {
         for pose in &row.poses {
             for (size, pool) in pose
                 .figures
