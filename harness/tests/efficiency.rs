@@ -2,7 +2,6 @@
 
 use hairis::HairParams;
 use hairis::params::HairDesc;
-use hairis_conformance::is_full;
 use hairis_harness::efficiency::*;
 use hairis_harness::lights::Lights;
 use hairis_harness::sampler::Sampler;
@@ -55,7 +54,7 @@ fn least(map: &Environment) -> EfficiencyConfig<'_> {
 
 fn small(map: &Environment) -> EfficiencyConfig<'_> {
     EfficiencyConfig {
-        budget: if is_full() { SMALL } else { part(4) },
+        budget: SMALL,
         ..EfficiencyConfig::new(11, true, map)
     }
 }

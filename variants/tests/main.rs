@@ -17,6 +17,8 @@ mod cauchy;
 mod chiang;
 #[cfg(any(not(hairis_one), hairis_one = "cauchy"))]
 mod family;
+#[cfg(any(not(hairis_one), hairis_one = "chiang"))]
+mod fiber;
 #[cfg(not(hairis_one))]
 mod json;
 #[cfg(any(not(hairis_one), hairis_one = "kajiya-kay"))]
