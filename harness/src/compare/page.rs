@@ -1,6 +1,6 @@
 //! Report of a comparison: its verdicts, findings and sections.
 
-use super::query::{Depth, most_efficient, predicted, v_gain};
+use super::query::{Depth, most_efficient, predicted, v_gain, v_gain_with_light};
 use super::{CompareSettings, Comparison, charts, distinct, rays, tables};
 use crate::efficiency::EfficiencyRow;
 use crate::lights::in_words;
@@ -212,10 +212,18 @@ fn which_sampler(of: &Comparison) -> Option<String> {
         Some(format!("{} model: {said}", model.title()))
     };
     let [gaussian, cauchy] = ModelKind::ALL.map(of_model);
+    let combined = v_gain_with_light(of).map(|gain| {
+        format!(
+            " Combined with light sampling, as in a path tracer, `matched` in place of `published` takes {} samples on the Gaussian \
+             model, in the mean over the lights.",
+            change(gain)
+        )
+    });
     Some(format!(
-        "Least variance in equal time, {gaussian}. {cauchy}.",
-        gaussian = gaussian?,
-        cauchy = cauchy?
+        "Least variance in equal time where the BSDF alone is sampled, {}. {}.{}",
+        gaussian?,
+        cauchy?,
+        combined.unwrap_or_default()
     ))
 }
 

@@ -1,7 +1,7 @@
 //! Queries to a comparison that tables, plots and verdicts share.
 
 use super::Comparison;
-use crate::efficiency::EfficiencyRow;
+use crate::efficiency::{EfficiencyRow, Technique};
 use crate::sampler::Sampler;
 use crate::subject::ModelKind;
 use hairis_instruments::sequence::SequenceKind;
@@ -48,6 +48,24 @@ pub(super) fn v_gain(
             .map(v)
     };
     Some(v((ModelKind::Gaussian, Sampler::Published))?.ratio(&v(other)?))
+}
+
+/// Returns V of the published sampler over that of the matched one on the Gaussian model, each combined with light sampling: the geometric
+/// mean over the lights, seen from [`THETA_O_DEG`].
+pub(super) fn v_gain_with_light(of: &Comparison) -> Option<Estimate> {
+    let v = |light: &str, sampler| {
+        let mut rows = of.efficiency.mis_rows.iter();
+        let row = rows.find(|row| {
+            (row.model, row.technique) == (ModelKind::Gaussian, Technique::Mis(sampler))
+                && (row.light.as_str(), row.theta_o_deg) == (light, THETA_O_DEG)
+        })?;
+        row.tested.then_some(row.v)
+    };
+    let lights = of.efficiency.settings.lights.iter();
+    let gains: Vec<Estimate> = lights
+        .filter_map(|light| Some(v(light, Sampler::Published)?.ratio(&v(light, Sampler::Matched)?)))
+        .collect();
+    (!gains.is_empty()).then(|| Estimate::geometric_mean(&gains))
 }
 
 /// Returns the sampler of a model whose variance after a given time is least under a light, seen from [`THETA_O_DEG`].
