@@ -11,9 +11,11 @@ mod format;
 mod mesh;
 mod mitsuba;
 mod monohair;
+mod obj;
 mod ply;
 mod ply_strands;
 mod raw;
+mod text;
 mod tressfx;
 
 pub use error::{ImportError, Problem};

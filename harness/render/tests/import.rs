@@ -2,6 +2,7 @@
 
 mod refused;
 mod research;
+mod text;
 mod tolerated;
 
 use glam::Vec3;

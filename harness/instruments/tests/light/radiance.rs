@@ -56,6 +56,7 @@ fn every_program_has_a_signature() {
         "#?RADIANCE\nFORMAT=32-bit_rle_rgbe",
         "#?RGBE\nFORMAT=32-bit_rle_rgbe",
         "#?AUTOPANO",
+        "#?RADIANCE # signature\n # EXPOSURE=2\nEXPOSURE=1 # none\nCOLORCORR=1 1 1# none\nFORMAT=32-bit_rle_rgbe # FORMAT=x",
         "#?RADIANCE\r\n# a comment\r\nFORMAT=32-bit_rle_rgbe\r\nGAMMA=1.0\r\n\r",
     ] {
         let (map, notes) = load(

@@ -77,7 +77,7 @@ impl<'a> Bytes<'a> {
     pub(super) fn position(self, offset: u64) -> Result<Vec3, Wrong> {
         let component = |axis: u64| {
             let value = self.f32(offset + 4 * axis);
-            if value.abs() <= 1e6 {
+            if is_near(value) {
                 Ok(value)
             } else {
                 Err((offset + 4 * axis, Problem::Coordinate { value }))
@@ -85,4 +85,17 @@ impl<'a> Bytes<'a> {
         };
         Ok(Vec3::new(component(0)?, component(1)?, component(2)?))
     }
+}
+
+/// Rejects a position that is not finite or farther than 1e6 units along an axis.
+pub(super) fn position(place: Vec3, offset: u64) -> Result<Vec3, Wrong> {
+    let components = place.to_array();
+    match components.into_iter().find(|value| !is_near(*value)) {
+        Some(value) => Err((offset, Problem::Coordinate { value })),
+        None => Ok(place),
+    }
+}
+
+fn is_near(component: f32) -> bool {
+    component.abs() <= 1e6
 }

@@ -3,7 +3,7 @@
 use super::bytes::Bytes;
 use super::ply::{self, Ply};
 use super::ply_strands::Vertices;
-use super::{ImportError, Problem, Up, Wrong, check_option, read};
+use super::{ImportError, Problem, Up, Wrong, check_option, obj, read};
 use crate::geometry::Mesh;
 use crate::part::digest;
 use glam::Vec3;
@@ -46,7 +46,7 @@ pub fn import_head_bytes(path: &Path, data: &[u8], options: &Head) -> Result<Mes
     let parts = if ply::fits(bytes) {
         of_ply(bytes)
     } else {
-        of_obj(data)
+        obj::parse(bytes)
     };
     let (mut places, triangles) =
         parts.map_err(|(offset, problem)| refuse(Some(offset), problem))?;
@@ -57,7 +57,7 @@ pub fn import_head_bytes(path: &Path, data: &[u8], options: &Head) -> Result<Mes
 }
 
 /// Positions, and triangles as indices into them.
-type Parts = (Vec<Vec3>, Vec<[u32; 3]>);
+pub(super) type Parts = (Vec<Vec3>, Vec<[u32; 3]>);
 
 fn of_ply(bytes: Bytes<'_>) -> Result<Parts, Wrong> {
     let ply = Ply::new(bytes)?;
@@ -89,57 +89,8 @@ fn of_ply(bytes: Bytes<'_>) -> Result<Parts, Wrong> {
     Ok((places, triangles))
 }
 
-/// Reads Wavefront OBJ, and of its lines only `v x y z` and `f a b c ...`. Each `a` is the number of a
-/// vertex, from 1 or back from -1, and may have other numbers behind slashes.
-///
-/// Own code, because `tobj` rejects meshes for normals and colours, which are not used, and names no line.
-fn of_obj(data: &[u8]) -> Result<Parts, Wrong> {
-    let (mut places, mut triangles) = (Vec::new(), Vec::new());
-    let mut offset = 0;
-    for line in data.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
-        let start = offset;
-        offset += line.len() as u64;
-        // Decode lossily, because names may be in any encoding.
-        let line = String::from_utf8_lossy(line);
-        let line = line.trim_start_matches('\u{feff}');
-        let mut words = line.split_ascii_whitespace();
-        let kind = words.next();
-        let wrong = |what: &str| {
-            let problem = format!("{what}, got {:.60?}", line.trim_end());
-            (start, Problem::Text(problem))
-        };
-        if kind == Some("v") {
-            let numbers: Option<Vec<f32>> = words.take(3).map(|word| word.parse().ok()).collect();
-            let numbers = numbers.filter(|numbers| numbers.len() == 3);
-            let numbers = numbers.ok_or_else(|| wrong("a vertex must have three numbers"))?;
-            places.push(Vec3::from_slice(&numbers));
-        } else if kind == Some("f") {
-            let corner = |word: &str| {
-                let number: i64 = word.split('/').next()?.parse().ok()?;
-                let count = i64::try_from(places.len()).ok()?;
-                let place = if number < 0 {
-                    count + number
-                } else {
-                    number - 1
-                };
-                u32::try_from(place).ok().filter(|_| place < count)
-            };
-            let corners: Option<Vec<u32>> = words.map(corner).collect();
-            let corners = corners.filter(|corners| corners.len() > 2).ok_or_else(|| {
-                wrong("a face must have three or more numbers of vertices before it")
-            })?;
-            triangles.extend(fan(&corners));
-        }
-    }
-    if places.is_empty() {
-        let problem = "a head must be a mesh, PLY or OBJ, got no vertex".to_owned();
-        return Err((0, Problem::Text(problem)));
-    }
-    Ok((places, triangles))
-}
-
 /// Splits a polygon into triangles that share its first corner.
-fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+pub(super) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let pairs = corners.windows(2).skip(1);
     pairs.map(|pair| [corners[0], pair[0], pair[1]])
 }

@@ -2,16 +2,18 @@
 //! had for `hair`.
 //!
 //! Text has a line `x y z radius` per node, and an empty line between strands. Mitsuba 0.6 and 2 also
-//! have lines of `x y z`, and lines of `#` between strands. The binary form is little endian:
+//! have lines of `x y z`, lines of `#` between strands, and comments behind data. The binary form is little endian:
 //! `BINARY_HAIR`, the number of nodes as u32, then three f32 per node, after an infinity for each node
 //! that begins a strand.
 
-use super::bytes::Bytes;
+use super::bytes::{Bytes, position};
 use super::raw::{Raw, RawStrand};
+use super::text::{Lines, data, excerpt};
 use super::{Problem, Wrong};
 use crate::geometry::Strands;
 use core::ops::Range;
 use glam::Vec3;
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 const SIGNATURE: &[u8] = b"BINARY_HAIR";
@@ -22,41 +24,21 @@ pub(super) fn is_binary(bytes: Bytes<'_>) -> bool {
     bytes.0.starts_with(SIGNATURE)
 }
 
-/// Returns true if the first line that is neither empty nor a comment has three or four numbers.
+/// Returns true if the first line with data has three or four numbers.
 pub(super) fn is_text(bytes: Bytes<'_>) -> bool {
-    let mut nodes = lines(bytes).filter(|(_, line)| !is_between(line));
-    nodes.next().is_some_and(|(_, line)| {
-        let numbers: Option<Vec<f32>> = numbers(line).collect();
-        numbers.is_some_and(|numbers| matches!(numbers.len(), 3 | 4))
-    })
+    let mut nodes = lines(bytes).filter(|(_, line)| !line.is_empty());
+    let numbers = nodes.next().and_then(|(_, line)| numbers(&line));
+    numbers.is_some_and(|numbers| matches!(numbers.len(), 3 | 4))
 }
 
-/// Iterates over lines and the offsets where they begin. Lines that are not text have no numbers.
-fn lines(bytes: Bytes<'_>) -> impl Iterator<Item = (u64, &str)> {
-    let mut start = 0;
-    let pieces = bytes
-        .0
-        .split_inclusive(|byte| matches!(byte, b'\n' | b'\r'));
-    pieces.map(move |piece| {
-        let offset = start;
-        start += piece.len() as u64;
-        (
-            offset,
-            core::str::from_utf8(piece)
-                .unwrap_or("\u{fffd}")
-                .trim()
-                .trim_start_matches('\u{feff}'),
-        )
-    })
+/// Iterates over the data of lines, which are empty between strands, and the offsets where the lines begin.
+fn lines(bytes: Bytes<'_>) -> impl Iterator<Item = (u64, Cow<'_, str>)> {
+    Lines::new(bytes).map(|(offset, line)| (offset, data(line.trim_ascii())))
 }
 
-/// Returns true if a line stands between strands.
-fn is_between(line: &str) -> bool {
-    line.is_empty() || line.starts_with('#')
-}
-
-fn numbers(line: &str) -> impl Iterator<Item = Option<f32>> {
-    line.split_ascii_whitespace().map(|word| word.parse().ok())
+fn numbers(line: &str) -> Option<Vec<f32>> {
+    let words = line.split_ascii_whitespace();
+    words.map(|word| word.parse().ok()).collect()
 }
 
 /// Makes strands from collected nodes.
@@ -88,30 +70,26 @@ pub(super) fn parse_text(bytes: Bytes<'_>, wants_radii: bool) -> Result<Raw<'_>,
     let mut strands: Vec<(u64, Range<usize>)> = Vec::new();
     let (mut columns, mut radii) = (None, None);
     let mut goes_on = false;
-    // Skip the empty line that appears between the two bytes of a line end on some systems.
-    let lines = lines(bytes).filter(|&(start, line)| {
-        let at = usize::try_from(start).unwrap_or(usize::MAX);
-        !(line.is_empty() && at > 0 && bytes.0[at - 1..].starts_with(b"\r\n"))
-    });
-    for (start, line) in lines {
-        if is_between(line) {
+    for (start, line) in lines(bytes) {
+        if line.is_empty() {
             goes_on = false;
             continue;
         }
-        let wrong = |what: &str| (start, Problem::Text(format!("{what}, got {line:.60?}")));
-        let values: Option<Vec<f32>> = numbers(line).collect();
-        let values = values.ok_or_else(|| wrong("a line must have numbers: x y z radius"))?;
-        if *columns.get_or_insert(values.len()) != values.len() || !matches!(values.len(), 3 | 4) {
-            return Err(wrong(
-                "every line must have four numbers, or every line three",
-            ));
+        let wrong = |what: &str| {
+            let problem = format!("{what}, got {}", excerpt(&line));
+            (start, Problem::Text(problem))
+        };
+        let values =
+            numbers(&line).ok_or_else(|| wrong("a line must have numbers: x y z radius"))?;
+        if !matches!(values.len(), 3 | 4) {
+            return Err(wrong("a line must have three or four numbers"));
         }
-        if let Some(value) = values[..3]
-            .iter()
-            .find(|value| value.is_nan() || value.abs() > 1e6)
-        {
-            return Err((start, Problem::Coordinate { value: *value }));
+        let columns = *columns.get_or_insert(values.len());
+        if values.len() != columns {
+            let rule = format!("every line must have {columns} numbers, as the first has");
+            return Err(wrong(&rule));
         }
+        let place = position(Vec3::from_slice(&values), start)?;
         let radius = values.get(3).filter(|_| wants_radii).copied();
         if let Some(value) = radius.filter(|radius| !(0.0..=1e6).contains(radius)) {
             return Err((start, Problem::Thickness { value }));
@@ -121,7 +99,7 @@ pub(super) fn parse_text(bytes: Bytes<'_>, wants_radii: bool) -> Result<Raw<'_>,
             strands.push((start, nodes.len()..nodes.len()));
         }
         goes_on = true;
-        nodes.push((Vec3::from_slice(&values), radius.unwrap_or(0.0)));
+        nodes.push((place, radius.unwrap_or(0.0)));
         if let Some((_, range)) = strands.last_mut() {
             range.end = nodes.len();
         }

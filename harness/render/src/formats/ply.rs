@@ -6,6 +6,7 @@
 //! rejects.
 
 use super::bytes::Bytes;
+use super::text::{Lines, excerpt, without_mark};
 use super::{Problem, Wrong};
 
 /// Type of a number in a column.
@@ -20,6 +21,9 @@ enum Number {
     F32,
     F64,
 }
+
+const TYPES: &str =
+    "the type of a property must be char, uchar, short, ushort, int, uint, float or double";
 
 impl Number {
     fn of(word: &str) -> Option<Self> {
@@ -68,6 +72,19 @@ enum Encoding {
     Big,
 }
 
+const FORMATS: &str = "the format must be ascii, binary_little_endian or binary_big_endian";
+
+impl Encoding {
+    fn of(word: &str) -> Option<Self> {
+        Some(match word {
+            "ascii" => Self::Text,
+            "binary_little_endian" => Self::Little,
+            "binary_big_endian" => Self::Big,
+            _ => return None,
+        })
+    }
+}
+
 /// Column of a table, of numbers or of lists.
 #[derive(Clone, Debug)]
 pub(super) struct Property {
@@ -78,6 +95,24 @@ pub(super) struct Property {
 }
 
 impl Property {
+    /// Parses a column from the words behind `property`. An error states the rule that they break.
+    fn of(words: &[&str]) -> Result<Self, &'static str> {
+        let (count, number, name) = match words {
+            ["list", count, number, name] => (Some(Number::of(count).ok_or(TYPES)?), number, name),
+            [number, name] => (None, number, name),
+            _ => {
+                return Err(
+                    "a property must have a type and a name, or `list`, two types and a name",
+                );
+            }
+        };
+        Ok(Self {
+            name: (*name).to_owned(),
+            count,
+            number: Number::of(number).ok_or(TYPES)?,
+        })
+    }
+
     pub(super) fn is_list(&self) -> bool {
         self.count.is_some()
     }
@@ -92,6 +127,16 @@ pub(super) struct Element {
 }
 
 impl Element {
+    /// Parses a table from the words behind `element`.
+    fn of(words: &[&str]) -> Option<Self> {
+        let [name, count] = words else { return None };
+        Some(Self {
+            name: (*name).to_owned(),
+            count: count.parse().ok()?,
+            properties: Vec::new(),
+        })
+    }
+
     /// Returns the index of the first column that has one of these names, and whose rows are lists or not.
     pub(super) fn column(&self, names: &[&str], lists: bool) -> Option<usize> {
         let places = names.iter().map(|name| {
@@ -123,32 +168,47 @@ impl Row {
         self.columns[column].first().copied().unwrap_or(f64::NAN)
     }
 
-    /// Converts a number that counts or indexes something to an integer below `limit`.
+    /// Converts the number of a vertex, of `limit` vertices, to an index.
     pub(super) fn index(&self, value: f64, limit: u64) -> Result<u32, Wrong> {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "compared with the number"
-        )]
-        let index = value as u32;
-        if f64::from(index) == value && u64::from(index) < limit {
-            return Ok(index);
-        }
-        let problem = format!("numbers of vertices must be whole and below {limit}, got {value}");
-        Err((self.offset, Problem::Text(problem)))
+        let index = whole(value).filter(|index| u64::from(*index) < limit);
+        index.ok_or_else(|| {
+            let problem =
+                format!("numbers of vertices must be whole and below {limit}, got {value}");
+            (self.offset, Problem::Text(problem))
+        })
     }
+
+    /// Converts the number of parts of a strand to an integer.
+    pub(super) fn count(&self, value: f64) -> Result<u32, Wrong> {
+        whole(value).ok_or_else(|| {
+            let problem =
+                format!("the count of a strand must be whole and below 2^32, got {value}");
+            (self.offset, Problem::Text(problem))
+        })
+    }
+}
+
+/// Converts a number to an integer, unless that changes its value.
+fn whole(value: f64) -> Option<u32> {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "compared with the number"
+    )]
+    let integer = value as u32;
+    (f64::from(integer) == value).then_some(integer)
 }
 
 pub(super) fn fits(bytes: Bytes<'_>) -> bool {
     [&b"ply\n"[..], b"ply\r", b"ply ", b"ply\t"]
         .iter()
-        .any(|start| bytes.0.starts_with(start))
+        .any(|start| without_mark(bytes).starts_with(start))
 }
 
 impl<'a> Ply<'a> {
     /// Reads the header of a file.
     pub(super) fn new(bytes: Bytes<'a>) -> Result<Self, Wrong> {
-        let mut lines = Lines { bytes, at: 0 };
+        let mut lines = Lines::new(bytes);
         let (mut encoding, mut elements) = (None, Vec::<Element>::new());
         if !fits(bytes) {
             let problem = "must begin with a line \"ply\"".to_owned();
@@ -162,26 +222,33 @@ impl<'a> Ply<'a> {
             };
             let line = String::from_utf8_lossy(line);
             let words: Vec<&str> = line.split_ascii_whitespace().collect();
+            let wrong = |problem: &str| {
+                let problem = format!("{problem}, got {}", excerpt(&line));
+                (offset, Problem::Text(problem))
+            };
             match words[..] {
                 [] | ["comment" | "obj_info", ..] => {}
                 ["end_header"] => break,
-                ["format", "ascii", _] => encoding = Some(Encoding::Text),
-                ["format", "binary_little_endian", _] => encoding = Some(Encoding::Little),
-                ["format", "binary_big_endian", _] => encoding = Some(Encoding::Big),
-                ["element", name, count] if count.parse::<u64>().is_ok() => {
-                    elements.push(Element {
-                        name: name.to_owned(),
-                        count: count.parse().unwrap_or(0),
-                        properties: Vec::new(),
-                    });
+                ["format", word, ..] => {
+                    encoding = Some(Encoding::of(word).ok_or_else(|| wrong(FORMATS))?)
+                }
+                ["element", ref rest @ ..] => {
+                    let element = Element::of(rest);
+                    elements.push(
+                        element.ok_or_else(|| wrong("an element must have a name and a count"))?,
+                    );
+                }
+                ["property", ref rest @ ..] => {
+                    let property = Property::of(rest).map_err(wrong)?;
+                    let element = elements.last_mut();
+                    let element =
+                        element.ok_or_else(|| wrong("a property must be below an element"))?;
+                    element.properties.push(property);
                 }
                 _ => {
-                    let property = property(&words).zip(elements.last_mut());
-                    let Some((property, element)) = property else {
-                        let problem = format!("the header must not have a line {line:.60?}");
-                        return Err((offset, Problem::Text(problem)));
-                    };
-                    element.properties.push(property);
+                    return Err(wrong(
+                        "a line of the header must begin with a keyword of PLY",
+                    ));
                 }
             }
         }
@@ -255,47 +322,6 @@ impl<'a> Ply<'a> {
     }
 }
 
-/// Parses a column from the words of its line.
-fn property(words: &[&str]) -> Option<Property> {
-    let (count, number, name) = match words {
-        ["property", "list", count, number, name] => (Some(Number::of(count)?), number, name),
-        ["property", number, name] => (None, number, name),
-        _ => return None,
-    };
-    Some(Property {
-        name: (*name).to_owned(),
-        count,
-        number: Number::of(number)?,
-    })
-}
-
-/// Lines from an offset on, without their ends: a line feed, a carriage return, or both.
-struct Lines<'a> {
-    bytes: Bytes<'a>,
-    at: u64,
-}
-
-impl<'a> Iterator for Lines<'a> {
-    type Item = (u64, &'a [u8]);
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let start = self.at;
-        let rest = self.bytes.0.get(usize::try_from(start).ok()?..)?;
-        if rest.is_empty() {
-            return None;
-        }
-        let ends = |byte: &u8| matches!(byte, b'\n' | b'\r');
-        let length = rest.iter().position(ends).unwrap_or(rest.len());
-        let end = if rest[length..].starts_with(b"\r\n") {
-            2
-        } else {
-            1
-        };
-        self.at = (start + (length + end) as u64).min(self.bytes.len());
-        Some((start, &rest[..length]))
-    }
-}
-
 /// Numbers of the tables, read from an offset on.
 struct Source<'a> {
     bytes: Bytes<'a>,
@@ -358,7 +384,7 @@ impl Source<'_> {
             let word = String::from_utf8_lossy(word);
             return word
                 .parse()
-                .map_err(|_| (row, format!("must have numbers, got {word:.20?}")));
+                .map_err(|_| (row, format!("must have numbers, got {}", excerpt(&word))));
         }
         let start = usize::try_from(self.at).unwrap_or(usize::MAX);
         let size = number.size();

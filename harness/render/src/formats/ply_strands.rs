@@ -8,7 +8,7 @@
 //! 3. a table of pairs of vertices, `edge` with `vertex1 vertex2`; chains begin at the end of the lower number;
 //! 4. a column of `vertex` that numbers strands, such as `strand_id`.
 
-use super::bytes::Bytes;
+use super::bytes::{Bytes, position};
 use super::ply::{Element, Ply, Row};
 use super::raw::{Raw, RawStrand};
 use super::{Problem, Wrong};
@@ -137,14 +137,7 @@ impl Vertices {
     pub(super) fn place(&self, row: &Row) -> Result<Vec3, Wrong> {
         #[expect(clippy::cast_possible_truncation, reason = "rounded to the nearest")]
         let place = Vec3::from(self.place.map(|column| row.number(column) as f32));
-        let far = place
-            .to_array()
-            .into_iter()
-            .find(|value| value.is_nan() || value.abs() > 1e6);
-        match far {
-            Some(value) => Err((row.offset, Problem::Coordinate { value })),
-            None => Ok(place),
-        }
+        position(place, row.offset)
     }
 }
 
@@ -240,11 +233,12 @@ impl Joined {
         match join {
             Join::Counts(column, less) => {
                 self.in_order = true;
-                let count = u64::from(row.index(row.number(column), limit + 1)?);
-                self.nodes = row.index(
-                    (u64::from(self.nodes) + count + u64::from(less)) as f64,
-                    limit + 1,
-                )?;
+                let count = row.count(row.number(column))?;
+                let needed = u64::from(self.nodes) + u64::from(count) + u64::from(less);
+                self.nodes = u32::try_from(needed)
+                    .ok()
+                    .filter(|_| needed <= limit)
+                    .ok_or((row.offset, Problem::Points { needed, got: limit }))?;
                 self.firsts.push(self.nodes);
             }
             Join::Lists(column) => {

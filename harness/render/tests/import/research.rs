@@ -370,7 +370,7 @@ fn wrong_strands_are_refused_in_one_line() {
         (
             "a.txt",
             b"0 0 0 1\n0 1 0\n".to_vec(),
-            "byte 8: every line must have four numbers, or every line three, got \"0 1 0\"",
+            "byte 8: every line must have 4 numbers, as the first has, got \"0 1 0\"",
         ),
         (
             "a.txt",
@@ -410,7 +410,7 @@ fn wrong_strands_are_refused_in_one_line() {
         (
             "a.ply",
             text("propert y\n", ""),
-            "byte 21: the header must not have a line \"propert y\"",
+            "byte 21: a line of the header must begin with a keyword of PLY, got \"propert y\"",
         ),
         (
             "a.ply",
@@ -455,7 +455,7 @@ fn wrong_strands_are_refused_in_one_line() {
         (
             "a.ply",
             text(&format!("{vertex}{strand}"), "0 0 0\n0 1 0\n2"),
-            "numbers of vertices must be whole and below 3, got 3",
+            "strands need 3 points, got 2",
         ),
         (
             "a.ply",

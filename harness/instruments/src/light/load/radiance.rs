@@ -87,7 +87,10 @@ impl Header {
             match text.split_once('=') {
                 _ if is_first || text.starts_with('#') => {}
                 _ if text.is_empty() => break,
-                Some((key, value)) => header.take(key, value.trim())?,
+                Some((key, value)) => {
+                    let data = value.split('#').next().unwrap_or_default();
+                    header.take(key, data.trim())?;
+                }
                 None => {}
             }
             is_first = false;
