@@ -9,6 +9,7 @@ pub mod direction;
 pub mod light;
 pub mod machine;
 pub mod markup;
+pub mod pixels;
 pub mod plot;
 pub mod progress;
 pub mod quadrature;

@@ -15,7 +15,7 @@ mod sun;
 
 pub use constant::Constant;
 pub use environment::{Environment, PixelRepairs};
-pub use load::{LightError, Primaries};
+pub use load::LightError;
 pub use rectangle::Rectangle;
 pub use sky::{Sky, xyy_to_rgb};
 pub use smooth::Smooth;

@@ -3,7 +3,6 @@
 mod environment;
 mod files;
 mod inversion;
-mod load;
 mod maps;
 mod radiance;
 mod rectangle;

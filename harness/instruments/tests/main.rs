@@ -6,6 +6,7 @@ mod direction;
 mod light;
 mod machine;
 mod markup;
+mod pixels;
 mod plot;
 mod quadrature;
 mod report;

@@ -9,9 +9,10 @@ use crate::scalp::Scalp;
 use crate::scenes::Name;
 use crate::transport::{Integrator, Mis};
 use crate::tree::Meet;
-use clap::{Parser, Subcommand};
+use clap::{ArgGroup, Parser, Subcommand};
 use core::str::FromStr;
 use hairis_instruments::error::Error;
+use hairis_instruments::pixels::LayerFlag;
 use hairis_instruments::shard::Shard;
 use std::path::PathBuf;
 
@@ -130,9 +131,12 @@ pub struct Fit {
     /// The hair's material
     #[command(flatten)]
     pub looks: Looks,
-    /// The picture: channels R, G and B of an EXR file, whose size and part of a larger picture are used
-    #[arg(long, value_name = "FILE.exr")]
+    /// The picture, .exr or .hdr, whose size and part of a larger picture are used
+    #[arg(long, value_name = "FILE", group = "layered")]
     pub target: PathBuf,
+    /// Layer of the .exr target; without --env, --layer names it as well [default: the only one with colour]
+    #[arg(long, value_name = "NAME")]
+    pub target_layer: Option<String>,
     /// Field of the start that stays as it is
     #[arg(long, value_name = "FIELD")]
     pub fix: Vec<String>,
@@ -164,6 +168,7 @@ pub struct Fit {
 
 /// Flags of a scene without the looks of its hair.
 #[derive(Clone, Debug, clap::Args)]
+#[command(group(ArgGroup::new("layered").multiple(true)))]
 pub struct Place {
     /// The scene
     #[arg(value_enum)]
@@ -202,10 +207,10 @@ pub struct Place {
     #[arg(long, value_name = "CM", requires = "import", default_value_t = 0.5)]
     pub spread: f32,
     /// Environment map in place of the scene's light, latitude-longitude, .hdr or .exr
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", group = "layered")]
     pub env: Option<PathBuf>,
     /// Layer of the .exr map [default: the only one with colour]
-    #[arg(long, value_name = "NAME", requires = "env")]
+    #[arg(long, value_name = "NAME", requires = "layered")]
     pub layer: Option<String>,
     /// Radiance that the camera sees beside the hair, in place of the map
     #[arg(long, value_name = "X")]
@@ -429,8 +434,34 @@ impl Fit {
         if !(2..=1024).contains(&self.spp) || !self.spp.is_multiple_of(2) {
             return refuse("--spp", "an even number from 2 to 1024", &self.spp);
         }
+        let without_map = self
+            .place
+            .layer
+            .as_ref()
+            .filter(|_| self.place.env.is_none());
+        if let Some(layer) = without_map.filter(|_| self.target_layer.is_some()) {
+            return refuse("--layer", "given with --env beside --target-layer", layer);
+        }
         check_exposure(self.exposure)?;
         self.place.check()
+    }
+
+    /// Returns the layer of the target.
+    #[must_use]
+    pub fn target_layer(&self) -> LayerFlag<'_> {
+        let (flag, layer) = match (&self.target_layer, &self.place) {
+            (
+                None,
+                Place {
+                    env: None, layer, ..
+                },
+            ) => ("--layer", layer),
+            (layer, _) => ("--target-layer", layer),
+        };
+        LayerFlag {
+            flag,
+            name: layer.as_deref(),
+        }
     }
 }
 

@@ -4,6 +4,7 @@ mod places;
 
 use super::inversion::{cell, guide, search};
 use super::{Light, LightSample, Seen8, luminance, rounded};
+use crate::pixels::INFINITE_PIXEL;
 use crate::quadrature::{GaussLegendre, Integral, SphereIntegrator};
 use crate::sequence::mix;
 use core::array;
@@ -14,9 +15,6 @@ use hairis::simd::Level;
 use places::{Places, in_doubt};
 use serde::Serialize;
 use wide::f32x8;
-
-/// Radiance that replaces an infinite pixel: the largest half float of `OpenEXR`.
-pub(super) const INFINITE_PIXEL: f32 = 65_504.0;
 
 /// Distance from the edges of a texel, as a share of the texel, below which a sample's texel is looked up once more.
 const EDGE: f64 = 1e-6;

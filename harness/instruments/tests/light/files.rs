@@ -202,9 +202,7 @@ fn each_refusal_says_why() {
     one_line(&error, &missing);
     let error = Environment::load(dir.path()).expect_err("directory");
     assert!(
-        error
-            .to_string()
-            .ends_with("is a directory, not an environment map"),
+        error.to_string().ends_with("is a directory, not a picture"),
         "{error}"
     );
     one_line(&error, dir.path());
@@ -212,7 +210,7 @@ fn each_refusal_says_why() {
         (
             "zero.hdr",
             b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 16\n",
-            "no pixels",
+            "from 1 to 2^25 pixels, got 16 x 0",
         ),
         (
             "huge.hdr",

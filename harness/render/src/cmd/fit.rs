@@ -39,9 +39,7 @@ const UNKNOWN: f64 = 0.1;
 pub(super) fn run(flags: &Flags) -> Result<(), Error> {
     flags.check()?;
     let start = start(flags)?;
-    let target = Target::read(&flags.target).map_err(|problem| {
-        Error::Usage(format!("--target {}: {problem}", flags.target.display()))
-    })?;
+    let target = target(flags)?;
     let settings = FitSettings {
         fixed: flags.fix.clone(),
         free: flags.free.clone(),
@@ -90,6 +88,16 @@ pub(super) fn run(flags: &Flags) -> Result<(), Error> {
     write_pictures(&[before, after, target], exposure, &pictures)?;
     let text = table(&found).to_text(terminal::columns());
     print(format!("{text}wrote {}\n", material.display()))
+}
+
+/// Reads the target, and logs how its values were changed.
+fn target(flags: &Flags) -> Result<Target, Error> {
+    let problem = |problem| Error::Usage(format!("--target {}: {problem}", flags.target.display()));
+    let target = Target::read(&flags.target, flags.target_layer()).map_err(problem)?;
+    for remark in target.remarks() {
+        say(&format!("{}: {remark}", flags.target.display()));
+    }
+    Ok(target)
 }
 
 /// Returns the material that the fit starts from.

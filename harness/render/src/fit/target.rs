@@ -1,11 +1,7 @@
 //! Target of a fit: a picture with the weights of its pixels.
 
 use crate::film::{Crop, Picture};
-use exr::block;
-use exr::meta::header::Header;
-use exr::prelude::{AttributeValue, FlatSamples, ReadChannels as _, ReadLayers as _, Text, read};
-use std::fs::File;
-use std::io::BufReader;
+use hairis_instruments::pixels::{LayerFlag, Pixels};
 use std::path::Path;
 
 /// Reach, in pixels to each side, of the mean from which the weight of a pixel follows. It is small enough to follow the light, and
@@ -24,6 +20,7 @@ pub struct Target {
     radiance: Vec<[f64; 3]>,
     weights: Vec<[f64; 3]>,
     run: Option<String>,
+    remarks: Vec<String>,
 }
 
 impl Target {
@@ -64,57 +61,58 @@ impl Target {
             radiance: picture.pixels.clone(),
             weights,
             run: None,
+            remarks: Vec::new(),
         })
     }
 
-    /// Reads a picture from the channels R, G and B of the first layer of an EXR file. If the data window is smaller than the display
-    /// window, the target is a part of the picture.
+    /// Reads a picture from a file, as environment maps are read. If the file has pixels of a part of its picture alone, the target is that
+    /// part.
     ///
     /// # Errors
     ///
-    /// Returns an error if the file cannot be read, if it has no such channels or has pixels that are not finite, or if its data window
-    /// reaches beyond its display window.
-    pub fn read(path: &Path) -> Result<Self, String> {
-        let unreadable = |problem: exr::error::Error| {
-            let line = problem.to_string().replace(['\n', '\r'], " ");
-            format!("cannot read: {line}")
+    /// Returns an error if the file cannot be read, if it has no colour or has pixels that are not finite, or if its picture is larger than
+    /// any that is rendered.
+    pub fn read(path: &Path, layer: LayerFlag<'_>) -> Result<Self, String> {
+        let Pixels {
+            size,
+            corner,
+            extent,
+            values,
+            remarks,
+            mut texts,
+        } = Pixels::read(path, layer, LONGEST * LONGEST)?;
+        if let Some(side) = size.iter().find(|side| **side > LONGEST) {
+            return Err(format!(
+                "the sides of the display window must have at most {LONGEST} pixels, got {side}"
+            ));
+        }
+        // No side is longer.
+        let short = |sides: [usize; 2]| sides.map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+        let ([x, y], [width, height]) = (short(corner), short(extent));
+        let crop = Crop {
+            x,
+            y,
+            width,
+            height,
         };
-        let file = File::open(path).map_err(|problem| unreadable(problem.into()))?;
-        let chunks = block::read(BufReader::new(file), false).map_err(unreadable)?;
-        // Check the windows first: decoding takes memory for every pixel of the data window, which the header alone states.
-        let (crop, size) = windows(&chunks.headers()[0])?;
-        let image = read()
-            .no_deep_data()
-            .largest_resolution_level()
-            .all_channels()
-            .first_valid_layer()
-            .all_attributes()
-            .from_chunks(chunks)
-            .map_err(unreadable)?;
-        let layer = &image.layer_data;
-        let channels = &layer.channel_data.list;
-        let channel = |name: &str| {
-            let found = channels.iter().find(|one| one.name == *name);
-            found.map(|one| &one.sample_data).ok_or_else(|| {
-                let names: Vec<String> = channels.iter().map(|one| one.name.to_string()).collect();
-                format!("the channels must be R, G and B, got {}", names.join(", "))
-            })
-        };
-        let rgb = [channel("R")?, channel("G")?, channel("B")?];
         let picture = Picture {
-            size: [crop.width, crop.height],
-            pixels: (0..crop.len())
-                .map(|place| rgb.map(|samples| number(samples, place)))
+            size: [width, height],
+            pixels: values
+                .into_iter()
+                .map(|pixel| pixel.map(f64::from))
                 .collect(),
         };
-        let run = match layer.attributes.other.get(&Text::from("run")) {
-            Some(AttributeValue::Text(text)) => Some(text.to_string()),
-            _ => None,
-        };
         Ok(Self {
-            run,
-            ..Self::new(&picture, crop, size)?
+            run: texts.remove("run"),
+            remarks,
+            ..Self::new(&picture, crop, short(size))?
         })
+    }
+
+    /// Returns remarks on how the values of the file were changed, one line each.
+    #[must_use]
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
     }
 
     /// Returns the part of the whole picture that the target covers.
@@ -157,53 +155,6 @@ impl Target {
             (*found != setting).then(|| format!("{found} in place of {setting}"))
         };
         expected.iter().filter_map(differs).collect()
-    }
-}
-
-/// Returns the part of the picture in the data window, and the size of the display window, which is the whole picture.
-fn windows(header: &Header) -> Result<(Crop, [u32; 2]), String> {
-    let display = header.shared_attributes.display_window;
-    let side = |pixels: usize| {
-        u32::try_from(pixels).ok().filter(|_| pixels <= LONGEST).ok_or_else(|| {
-            format!("the sides of the display window must have at most {LONGEST} pixels, got {pixels}")
-        })
-    };
-    let size = [side(display.size.width())?, side(display.size.height())?];
-    let data = header.data_window();
-    let corner = data.position - display.position;
-    let (width, height) = (data.size.width(), data.size.height());
-    let within = |from: i32, count: usize, all: u32| {
-        let from = u32::try_from(from).ok()?;
-        let count = u32::try_from(count).ok()?;
-        from.checked_add(count).filter(|end| *end <= all)?;
-        Some((from, count))
-    };
-    let (Some((x, width)), Some((y, height))) = (
-        within(corner.x(), width, size[0]),
-        within(corner.y(), height, size[1]),
-    ) else {
-        return Err(format!(
-            "the data window must lie within the display window of {} x {} pixels, got {width} x {height} from {} {}",
-            size[0],
-            size[1],
-            corner.x(),
-            corner.y()
-        ));
-    };
-    let crop = Crop {
-        x,
-        y,
-        width,
-        height,
-    };
-    Ok((crop, size))
-}
-
-fn number(samples: &FlatSamples, place: usize) -> f64 {
-    match samples {
-        FlatSamples::F16(numbers) => f64::from(numbers[place].to_f32()),
-        FlatSamples::F32(numbers) => f64::from(numbers[place]),
-        FlatSamples::U32(numbers) => f64::from(numbers[place]),
     }
 }
 

@@ -2,9 +2,11 @@
 
 use super::{refuse, run, succeed};
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, IntegerBounds, Layer,
-    LayerAttributes, Vec2, WritableImage as _,
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes,
+    IntegerBounds, Layer, LayerAttributes, Vec2, WritableImage as _,
 };
+use hairis_instruments::light::{Environment, Light as _};
+use hairis_instruments::pixels::LayerFlag;
 use hairis_render::film::Crop;
 use hairis_render::fit::Target;
 use std::fs;
@@ -140,12 +142,182 @@ fn with_window(folder: &TempDir, name: &str, attribute: &str, window: [i32; 4]) 
     fs::write(folder.path().join(name), bytes).expect("written");
 }
 
+/// Reads a target.
+fn target(folder: &TempDir, file: &str, name: Option<&str>) -> Result<Target, String> {
+    let flag = "--layer";
+    Target::read(&folder.path().join(file), LayerFlag { flag, name })
+}
+
+/// Writes parts of 8 x 8 pixels, each a layer with a value and the names of its channels.
+fn write_parts(folder: &TempDir, name: &str, parts: &[(&str, &[&str], f32)]) {
+    let part = |(name, channels, value): &(&str, &[&str], f32)| {
+        let channel = |name: &&str| AnyChannel::new(*name, FlatSamples::F32(vec![*value; 64]));
+        let channels = AnyChannels::sort(channels.iter().map(channel).collect());
+        let attributes = LayerAttributes::named(*name);
+        Layer::new((8, 8), attributes, Encoding::UNCOMPRESSED, channels)
+    };
+    let parts: Vec<_> = parts.iter().map(part).collect();
+    let image = Image::from_layers(ImageAttributes::with_size((8, 8)), parts);
+    let path = folder.path().join(name);
+    image.write().to_file(path).expect("written");
+}
+
+/// Checks that a target is read by the rules of environment maps.
+#[test]
+fn targets_are_pictures_as_maps_are() {
+    let folder = TempDir::new().expect("a folder");
+    let half = ("beauty", &["R", "G", "B"][..], 0.5);
+    for (parts, layer) in [
+        (&[half][..], None),
+        (&[("", &["b", "g", "r"], 0.5)], None),
+        (&[("", &["Y"], 0.5)], None),
+        (
+            &[(
+                "",
+                &[
+                    "Hair.Combined.R",
+                    "Hair.Combined.G",
+                    "Hair.Combined.B",
+                    "Hair.Depth.Z",
+                ],
+                0.5,
+            )],
+            None,
+        ),
+        (&[("depth", &["Z"], 9.0), half], None),
+        (&[("albedo", &["R", "G", "B"], 9.0), half], Some("beauty")),
+        (
+            &[
+                ("", &["R", "G", "B"], 0.5),
+                ("albedo", &["albedo.R", "albedo.G", "albedo.B"], 9.0),
+            ],
+            None,
+        ),
+    ] {
+        write_parts(&folder, "a.exr", parts);
+        let target = target(&folder, "a.exr", layer).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(target.picture().pixels, [[0.5; 3]; 64], "{parts:?}");
+        let map = Environment::load_layer(folder.path().join("a.exr"), layer).expect("a map");
+        let radiance = map.radiance(glam::DVec3::X);
+        assert_eq!(radiance, [0.5; 3], "{parts:?}");
+    }
+    // Radiance, and the part of the picture within its window.
+    let hdr = [
+        &b"#?RADIANCE\n\n-Y 8 +X 8\n"[..],
+        &[128, 128, 128, 128].repeat(64),
+    ]
+    .concat();
+    fs::write(folder.path().join("a.hdr"), hdr).expect("written");
+    let radiance = target(&folder, "a.hdr", None).expect("a picture");
+    assert_eq!(radiance.picture().pixels, [[0.5; 3]; 64]);
+    write(
+        &folder,
+        "a.exr",
+        &[("R", 0.5), ("G", 0.5), ("B", 0.5)],
+        [3, -2],
+    );
+    let part = target(&folder, "a.exr", None).expect("a picture");
+    let crop = Crop {
+        x: 3,
+        y: 0,
+        width: 5,
+        height: 6,
+    };
+    assert_eq!((part.size(), part.crop()), ([8; 2], crop));
+}
+
+#[test]
+fn a_flag_names_the_layer_of_a_target() {
+    let folder = TempDir::new().expect("a folder");
+    let rgb = &["R", "G", "B"][..];
+    write_parts(
+        &folder,
+        "a.exr",
+        &[("albedo", rgb, 0.5), ("beauty", rgb, 0.25)],
+    );
+    write_parts(
+        &folder,
+        "sky.exr",
+        &[("day", rgb, 0.5), ("night", rgb, 0.25)],
+    );
+    let none = "several layers have colour, choose one by";
+    for (flags, words) in [
+        (
+            &["lamps"][..],
+            format!("--target a.exr: {none} --layer NAME: albedo (R G B), beauty (R G B)"),
+        ),
+        (
+            &["lamps", "--layer", "sky"],
+            "--target a.exr: --layer must be a layer with colour of the file, got sky".to_owned(),
+        ),
+        (
+            &["lamps", "--target-layer", "sky"],
+            "--target a.exr: --target-layer must be a layer".to_owned(),
+        ),
+        (
+            &["env", "--env", "sky.exr", "--layer", "day"],
+            format!("--target a.exr: {none} --target-layer NAME"),
+        ),
+        (
+            &["env", "--env", "sky.exr", "--target-layer", "beauty"],
+            format!("sky.exr: {none} --layer NAME"),
+        ),
+        (
+            &["lamps", "--layer", "albedo", "--target-layer", "beauty"],
+            "--layer must be given with --env beside --target-layer, got albedo".to_owned(),
+        ),
+    ] {
+        let line = refuse(
+            &folder,
+            &[&["fit", "--target", "a.exr", "--strands", "1"], flags].concat(),
+        );
+        assert!(line.contains(&words), "{line} for {words}");
+    }
+    let missing = ["render", "env", "--layer", "day"];
+    assert!(
+        refuse(&folder, &missing).contains("--env"),
+        "a layer of no file"
+    );
+    // The picture has no hair in its 8 x 8 pixels, which is found once all files are read.
+    for flags in [
+        &["lamps", "--layer", "beauty"][..],
+        &["lamps", "--target-layer", "beauty"],
+        &[
+            "env",
+            "--env",
+            "sky.exr",
+            "--layer",
+            "day",
+            "--target-layer",
+            "beauty",
+        ],
+    ] {
+        let short = [
+            "fit",
+            "--target",
+            "a.exr",
+            "--strands",
+            "1",
+            "--iterations",
+            "2",
+            "--spp",
+            "2",
+        ];
+        let output = run(&folder, &[&short, flags].concat());
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            errors.contains("a.exr: layer beauty"),
+            "{flags:?}: {errors}"
+        );
+    }
+}
+
 /// Checks that a picture is as large as its windows, whatever attributes a program has kept that made it smaller.
 #[test]
 fn windows_say_how_large_a_target_is() {
     let folder = TempDir::new().expect("a folder");
     let read = |name: &str| {
-        let target = Target::read(&folder.path().join(name)).expect("a picture");
+        let target = target(&folder, name, None).expect("a picture");
         (target.size(), target.crop())
     };
     let grey = [("R", 0.5), ("G", 0.5), ("B", 0.5)];
@@ -168,8 +340,9 @@ fn bad_targets_and_flags_are_refused_in_one_line() {
     write(&folder, "a.exr", &grey, [0, 0]);
     // More pixels than any memory holds.
     with_window(&folder, "wide.exr", "displayWindow", [0, 0, 1 << 29, 0]);
+    with_window(&folder, "long.exr", "displayWindow", [0, 0, 16384, 8]);
     with_window(&folder, "vast.exr", "dataWindow", [0, 0, 1 << 29, 7]);
-    write(&folder, "y.exr", &[("Y", 0.5)], [0, 0]);
+    write(&folder, "z.exr", &[("Z", 0.5)], [0, 0]);
     write(
         &folder,
         "nan.exr",
@@ -182,7 +355,7 @@ fn bad_targets_and_flags_are_refused_in_one_line() {
         &[("R", 0.5), ("G", 0.5), ("B", -1e3)],
         [0, 0],
     );
-    write(&folder, "outside.exr", &grey, [3, 0]);
+    write(&folder, "outside.exr", &grey, [8, 0]);
     fs::write(folder.path().join("cut.exr"), b"v/1\x01\x02\0\0\0").expect("written");
     let material = r#"{"model":"chiang","params":{"beta_m":0.3,"beta_n":0.3,"melanin":[1,0]}}"#;
     fs::write(
@@ -198,9 +371,9 @@ fn bad_targets_and_flags_are_refused_in_one_line() {
         ),
         (
             &["--target", "cut.exr"],
-            &["--target cut.exr", "cannot read"],
+            &["--target cut.exr", "damaged or cut short"],
         ),
-        (&["--target", "y.exr"], &["y.exr", "R, G and B", "got Y"]),
+        (&["--target", "z.exr"], &["z.exr", "R, G and B", "got Z"]),
         (
             &["--target", "nan.exr"],
             &["nan.exr", "G of the pixel 2,1", "NaN"],
@@ -211,15 +384,23 @@ fn bad_targets_and_flags_are_refused_in_one_line() {
         ),
         (
             &["--target", "outside.exr"],
-            &["outside.exr", "8 x 8", "from 3 0"],
+            &["outside.exr", "8 x 8", "from 8 0"],
         ),
         (
             &["--target", "wide.exr"],
-            &["wide.exr", "display window", "16384", "got 536870913"],
+            &[
+                "wide.exr",
+                "display window",
+                "2^28 pixels, got 536870913 x 1",
+            ],
+        ),
+        (
+            &["--target", "long.exr"],
+            &["long.exr", "display window", "16384 pixels, got 16385"],
         ),
         (
             &["--target", "vast.exr"],
-            &["vast.exr", "data window", "8 x 8", "got 536870913 x 8"],
+            &["vast.exr", "data window", "2^28 pixels, got 536870913 x 8"],
         ),
         (&["--model", "phong"], &["phong", "gaussian"]),
         (&["--hair", "green"], &["green", "blond"]),

@@ -1,32 +1,37 @@
 //! Reader of Radiance HDR files: the header, and the order of the pixels.
 
 use super::primaries::{Primaries, xyz_to_rec_709};
-use super::{Map, checked, damaged, excerpt, line, rgbe};
+use super::{Pixels, checked, damaged, excerpt, line, rgbe};
 use crate::light::rounded;
+use std::collections::BTreeMap;
 use std::io::{BufRead, ErrorKind, Read as _};
 
 /// Length of the longest header that is read, in bytes.
 const LONGEST_HEADER: u64 = 1 << 20;
 
 /// Reads the map of a file.
-pub(super) fn read(mut file: impl BufRead) -> Result<Map, String> {
+pub(super) fn read(mut file: impl BufRead, most: usize) -> Result<Pixels, String> {
     let header = Header::read(&mut file.by_ref().take(LONGEST_HEADER))?;
     let [lines, length] = header.scan.map(|axis| axis.length);
-    let mut map = Map {
-        size: checked(header.size())?,
-        pixels: Vec::new(),
+    let size = checked("picture", header.size(), most)?;
+    let mut map = Pixels {
+        size,
+        corner: [0; 2],
+        extent: size,
+        values: Vec::new(),
         remarks: Vec::new(),
+        texts: BTreeMap::new(),
     };
     let scanned = rgbe::read(&mut file, lines, length).map_err(|e| match e.kind() {
         ErrorKind::UnexpectedEof | ErrorKind::InvalidData => damaged(e),
         _ => format!("cannot read: {}", line(&e)),
     })?;
-    map.pixels = vec![[0.0; 3]; lines * length];
+    map.values = vec![[0.0; 3]; lines * length];
     for (k, pixel) in scanned.into_iter().enumerate() {
-        map.pixels[header.place(k)] = pixel;
+        map.values[header.place(k)] = pixel;
     }
     if header.divisor != [1.0; 3] {
-        for pixel in &mut map.pixels {
+        for pixel in &mut map.values {
             *pixel = core::array::from_fn(|c| rounded(f64::from(pixel[c]) / header.divisor[c]));
         }
         let [r, g, b] = header.divisor;

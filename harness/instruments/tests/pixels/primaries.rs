@@ -1,7 +1,7 @@
 //! Tests of `light::load::primaries`.
 
 use glam::{DMat3, DVec3};
-use hairis_instruments::light::Primaries;
+use hairis_instruments::pixels::Primaries;
 
 #[test]
 fn matrices_are_those_of_the_standards() {

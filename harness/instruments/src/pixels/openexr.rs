@@ -1,9 +1,11 @@
 //! Reader of `OpenEXR` files: the pixels of one layer, converted to Rec. 709.
+//!
+//! Compressions that are read: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab.
 
 mod layers;
 
 use super::primaries::{Primaries, xyz_to_rec_709};
-use super::{Map, checked, damaged, line};
+use super::{LayerFlag, Pixels, checked, damaged, line};
 use crate::light::rounded;
 use exr::block::lines::LineRef;
 use exr::block::reader::ChunksReader as _;
@@ -11,32 +13,102 @@ use exr::block::{self, BlockIndex, UncompressedBlock};
 use exr::error::{Error, Result as ExrResult, UnitResult};
 use exr::math::Vec2;
 use exr::meta::MetaData;
-use exr::meta::attribute::{Chromaticities, EnvironmentMap, SampleType};
+use exr::meta::attribute::{AttributeValue, Chromaticities, EnvironmentMap, SampleType};
 use exr::meta::header::Header;
 use exr::prelude::f16;
 use layers::{Colour, Layer, choose, find_layers, listed};
-use std::io::{BufRead, Seek};
+use std::collections::BTreeMap;
+use std::io::{self, BufRead, Read as _, Seek};
 
-/// Reads the map of the chosen layer.
-pub(super) fn read(mut file: impl BufRead + Seek, layer: Option<&str>) -> Result<Map, String> {
+/// Names of the compressions that are not read, by the numbers that files have for them: those that `OpenEXR` 3.4 and 3.5 added.
+const UNREAD: [(u8, &str); 4] = [
+    (10, "htj2k256"),
+    (11, "htj2k32"),
+    (12, "lj2k"),
+    (13, "zstd"),
+];
+
+/// Reads the pixels of the chosen layer.
+pub(super) fn read(
+    mut file: impl BufRead + Seek,
+    layer: LayerFlag<'_>,
+    most: usize,
+) -> Result<Pixels, String> {
     let mut start = [0; 8];
-    file.read_exact(&mut start)
-        .and_then(|()| file.rewind())
-        .map_err(|e| refusal(e.into()))?;
+    file.read_exact(&mut start).map_err(|e| refusal(e.into()))?;
     if start[5] & 8 != 0 {
         return Err(DEEP.to_owned());
     }
-    let meta = MetaData::read_from_buffered(&mut file, true).map_err(refusal)?;
+    let compressions = compressions(&mut file, start[5] & 16 != 0);
+    file.rewind().map_err(|e| refusal(e.into()))?;
+    let meta = MetaData::read_from_buffered(&mut file, true);
+    // The decoder takes no file with a number that it does not know, in whatever part.
+    if meta.is_err() {
+        compressions
+            .iter()
+            .try_for_each(|number| check_compression(*number))?;
+    }
+    let meta = meta.map_err(refusal)?;
     let layers = find_layers(&meta.headers);
     let chosen = choose(&meta.headers, &layers, layer)?;
     check_support(&meta.headers, chosen.part)?;
+    if let Some(number) = compressions.get(chosen.part) {
+        check_compression(*number)?;
+    }
     file.rewind().map_err(|e| refusal(e.into()))?;
-    let mut map = pixels(file, &meta.headers[chosen.part], chosen)?;
+    let mut map = pixels(file, &meta.headers[chosen.part], chosen, most)?;
     if !chosen.name.is_empty() {
         map.remarks.push(format!("layer {}", chosen.name));
     }
     convert(&mut map, &meta.headers, chosen)?;
     Ok(map)
+}
+
+/// Returns the numbers of the parts' compressions, read from behind the first 8 bytes of a file, as far as its headers can be read.
+fn compressions(file: &mut impl BufRead, has_parts: bool) -> Vec<u8> {
+    let mut numbers = Vec::new();
+    let mut attribute = || -> io::Result<bool> {
+        let mut name = Vec::new();
+        file.by_ref().take(256).read_until(0, &mut name)?;
+        if name == b"\0" {
+            return Ok(false);
+        }
+        let (mut kind, mut size) = (Vec::new(), [0; 4]);
+        file.by_ref().take(256).read_until(0, &mut kind)?;
+        file.read_exact(&mut size)?;
+        let mut value = file.by_ref().take(u32::from_le_bytes(size).into());
+        if name == b"compression\0" {
+            let mut number = [0];
+            value.read_exact(&mut number)?;
+            numbers.extend(number);
+        }
+        io::copy(&mut value, &mut io::sink())?;
+        Ok(true)
+    };
+    // An empty name ends a header, and another one behind it the headers of several parts.
+    let mut header = || -> io::Result<bool> {
+        let mut is_empty = true;
+        while attribute()? {
+            is_empty = false;
+        }
+        Ok(!is_empty && has_parts)
+    };
+    while header().unwrap_or(false) {}
+    numbers
+}
+
+/// Rejects, by name, a compression that is not read.
+fn check_compression(number: u8) -> Result<(), String> {
+    let name = UNREAD.iter().find(|(one, _)| *one == number);
+    match name {
+        Some((_, name)) => Err(format!(
+            "unsupported: the compression {name}; write the file with zip"
+        )),
+        None if number > UNREAD[3].0 => Err(format!(
+            "unsupported: an unknown compression, number {number}; write the file with zip"
+        )),
+        None => Ok(()),
+    }
 }
 
 const DEEP: &str = "unsupported: deep data; flatten the file first";
@@ -85,36 +157,46 @@ fn check_support(headers: &[Header], part: usize) -> Result<(), String> {
     Ok(())
 }
 
-/// Reads the pixels of the display window, which are black outside the data window.
-fn pixels(file: impl BufRead + Seek, header: &Header, layer: &Layer) -> Result<Map, String> {
+/// Reads the pixels of the data window that lie within the display window.
+fn pixels(
+    file: impl BufRead + Seek,
+    header: &Header,
+    layer: &Layer,
+    most: usize,
+) -> Result<Pixels, String> {
     let (display, data) = (
         header.shared_attributes.display_window,
         header.data_window(),
     );
-    let size = checked([display.size.width(), display.size.height()])?;
-    let data_size = checked([data.size.width(), data.size.height()])?;
+    let size = [display.size.width(), display.size.height()];
+    let size = checked("display window", size, most)?;
+    let data_size = [data.size.width(), data.size.height()];
+    let data_size = checked("data window", data_size, most)?;
     // Position of the data window's upper left corner in the display window.
     let offset = [
         i64::from(data.position.x()) - i64::from(display.position.x()),
         i64::from(data.position.y()) - i64::from(display.position.y()),
     ];
-    let windows = format!(
-        "the data window, {} x {} pixels from {} {}, must overlap the display window, {} x {}",
-        data_size[0], data_size[1], offset[0], offset[1], size[0], size[1]
-    );
-    let ends = [0, 1].map(|axis| offset[axis] + data_size[axis] as i64);
-    if (0..2).any(|axis| offset[axis] >= size[axis] as i64 || ends[axis] <= 0) {
-        return Err(windows);
+    let within = |axis: usize, at: i64| usize::try_from(at).unwrap_or(0).min(size[axis]);
+    let corner = [0, 1].map(|axis| within(axis, offset[axis]));
+    let end = [0, 1].map(|axis| within(axis, offset[axis] + data_size[axis] as i64));
+    let extent = [0, 1].map(|axis| end[axis] - corner[axis]);
+    if extent.contains(&0) {
+        return Err(format!(
+            "the data window, {} x {} pixels from {} {}, must overlap the display window, {} x {}",
+            data_size[0], data_size[1], offset[0], offset[1], size[0], size[1]
+        ));
     }
-    let mut remarks = Vec::new();
-    if (0..2).any(|axis| offset[axis] > 0 || ends[axis] < size[axis] as i64) {
-        remarks.push(windows.replace("must overlap", "covers a part of") + ": black elsewhere");
-    }
-    let mut map = Map {
+    let mut map = Pixels {
         size,
-        pixels: vec![[0.0; 3]; size[0] * size[1]],
-        remarks,
+        corner,
+        extent,
+        values: vec![[0.0; 3]; extent[0] * extent[1]],
+        remarks: Vec::new(),
+        texts: texts(header),
     };
+    // Position of the data window in the part that is read, 0 or less.
+    let offset = [0, 1].map(|axis| offset[axis] - corner[axis] as i64);
     let is_wanted = |block: &BlockIndex| block.layer == layer.part && block.level == Vec2(0, 0);
     let take_block = |_: &MetaData, block: UncompressedBlock| {
         if !is_wanted(&block.index) {
@@ -130,22 +212,32 @@ fn pixels(file: impl BufRead + Seek, header: &Header, layer: &Layer) -> Result<M
     Ok(map)
 }
 
-/// Stores the samples of a line, if they belong to the layer and lie within the display window.
+/// Returns the attributes of a part that are text.
+fn texts(header: &Header) -> BTreeMap<String, String> {
+    let own = header.own_attributes.other.iter();
+    own.filter_map(|(name, value)| match value {
+        AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
+        _ => None,
+    })
+    .collect()
+}
+
+/// Stores the samples of a line, if they belong to the layer and lie within the part that is read.
 fn take(
-    map: &mut Map,
+    map: &mut Pixels,
     offset: [i64; 2],
     header: &Header,
     layer: &Layer,
     line: LineRef<'_>,
 ) -> UnitResult {
     let channel = line.location.channel;
-    let [width, height] = map.size;
+    let [width, height] = map.extent;
     let Vec2(x, y) = line.location.position;
     let row = usize::try_from(y as i64 + offset[1]).unwrap_or(usize::MAX);
     if row >= height || !layer.channels.contains(&channel) {
         return Ok(());
     }
-    let row = &mut map.pixels[row * width..][..width];
+    let row = &mut map.values[row * width..][..width];
     let samples: Box<dyn Iterator<Item = ExrResult<f32>>> =
         match header.channels.list[channel].sample_type {
             SampleType::F16 => Box::new(line.read_samples().map(|one| one.map(f16::to_f32))),
@@ -171,7 +263,7 @@ fn take(
 }
 
 /// Converts the channels of the layer to RGB with the Rec. 709 primaries.
-fn convert(map: &mut Map, headers: &[Header], layer: &Layer) -> Result<(), String> {
+fn convert(map: &mut Pixels, headers: &[Header], layer: &Layer) -> Result<(), String> {
     // Files may store the attributes of all parts in the first part alone.
     let chromaticities = [layer.part, 0]
         .iter()
@@ -188,7 +280,7 @@ fn convert(map: &mut Map, headers: &[Header], layer: &Layer) -> Result<(), Strin
         Colour::Chroma => {
             // RY and BY are (R - Y) / Y and (B - Y) / Y.
             let [yr, yg, yb] = primaries.to_xyz()?.row(1).to_array();
-            for pixel in &mut map.pixels {
+            for pixel in &mut map.values {
                 let [ry, y, by] = pixel.map(f64::from);
                 let (r, b) = ((ry + 1.0) * y, (by + 1.0) * y);
                 *pixel = [r, (y - yr * r - yb * b) / yg, b].map(rounded);

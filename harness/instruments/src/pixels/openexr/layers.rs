@@ -1,6 +1,6 @@
 //! Layers with colour: the list of those in a file, and the choice of the one that holds the map.
 
-use super::super::line;
+use super::super::{LayerFlag, line};
 use exr::meta::header::Header;
 use std::collections::BTreeMap;
 
@@ -99,14 +99,14 @@ fn channel_names(header: &Header) -> Vec<String> {
 pub(super) fn choose<'a>(
     headers: &[Header],
     layers: &'a [Layer],
-    name: Option<&str>,
+    flag: LayerFlag<'_>,
 ) -> Result<&'a Layer, String> {
     let only = |is_meant: &dyn Fn(&Layer) -> bool| {
         let mut meant = layers.iter().filter(|layer| is_meant(layer));
         meant.next().filter(|_| meant.next().is_none())
     };
     let is_rgb = |layer: &Layer| layer.colour == Colour::Rgb;
-    let found = match name {
+    let found = match flag.name {
         Some(name) => only(&|layer| layer.name == name),
         None => only(&|layer| is_rgb(layer) && layer.is_unnamed).or_else(|| {
             if !layers.iter().any(is_rgb) {
@@ -125,7 +125,7 @@ pub(super) fn choose<'a>(
     if layers.is_empty() {
         let names = listed(channels.into_iter().flatten());
         return Err(format!(
-            "unsupported: a map needs channels R, G and B, or X, Y and Z, or Y, got {names}"
+            "unsupported: a picture needs channels R, G and B, or X, Y and Z, or Y, got {names}"
         ));
     }
     let names = listed(layers.iter().map(|layer| {
@@ -140,11 +140,12 @@ pub(super) fn choose<'a>(
         };
         format!("{name} ({})", its.join(" "))
     }));
+    let LayerFlag { flag, name } = flag;
     Err(match name {
         Some(name) => {
-            format!("--layer must be a layer with colour of the file, got {name}; it has {names}")
+            format!("{flag} must be a layer with colour of the file, got {name}; it has {names}")
         }
-        None => format!("several layers have colour, choose one by --layer NAME: {names}"),
+        None => format!("several layers have colour, choose one by {flag} NAME: {names}"),
     })
 }
 

@@ -1,0 +1,4 @@
+//! Tests of `pixels`.
+
+mod openexr;
+mod primaries;
