@@ -1,6 +1,6 @@
 #!/bin/bash
 # Promise: generated source is what it says. C and C++ (gcc, clang), SPIR-V and GLSL on a Vulkan driver have the bits of one lane
-# for every model; plain WGSL has its accuracy there and on WebGPU of headless Chromium, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C
+# for every model, and so has Python with NumPy; plain WGSL has its accuracy there and on WebGPU of headless Chromium, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C
 # and PTX compile; gradients in C have the bits of the graph; the example draws the same picture on wgpu and on the CPU.
 # Where nvcc and a GPU are, CUDA has the bits of one lane as well.
 # Debian's packages: gcc, g++, clang, glslang-tools, spirv-tools, libvulkan-dev, mesa-vulkan-drivers; node, npm, and Chromium as in
@@ -30,13 +30,22 @@ HAIRIS_PLAYWRIGHT=$tools/page
 mkdir -p "$tools"
 HAIRIS_CHROMIUM=$(bash -ec '. .ci/unpack; browser; node --version; "$chromium" --version; echo "$chromium"' | tail -n 1) ||
   { unset HAIRIS_CHROMIUM; echo "node, npm or Chromium is missing: tests on WebGPU are skipped"; }
-# The program of the test command, which has compiled it.
-tests=$(cargo test -q --locked --workspace --no-run --message-format=json | python3 -c '
+export HAIRIS_PYTHON=$tools/numpy/bin/python
+[ -x "$HAIRIS_PYTHON" ] || python3 -m venv "$tools/numpy"
+"$HAIRIS_PYTHON" -m pip install -q numpy
+# The programs of the test command, which has compiled them.
+messages=$(cargo test -q --locked --workspace --no-run --message-format=json)
+program() {
+  python3 -c '
 import json, sys
 for built in map(json.loads, sys.stdin):
-    if built.get("executable") and built["target"]["src_path"].endswith("/variants/shaders/tests/main.rs"):
-        print(built["executable"])')
-(cd variants/shaders && "$tests" --ignored --nocapture)
+    if built.get("executable") and built["target"]["src_path"].endswith(sys.argv[1]):
+        print(built["executable"])' "/$1/tests/main.rs" <<<"$messages"
+}
+for package in variants/shaders harness/shader; do
+  tests=$(program $package)
+  (cd $package && "$tests" --ignored --nocapture && "$tests" python)
+done
 # The bounds of the example are those of the driver in software. Mesa asks for XDG_RUNTIME_DIR.
 if [ -n "${VK_DRIVER_FILES:-}" ]; then
   picture=$(mktemp --suffix .png)

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 const SHADER: &str = "\
 Every file has the presets of the model as functions without arguments: hairis_gaussian_material_brown(). `exact` is the
-default of c, `gpu` that of the other targets: see variants/shaders/src/guide/generated.md.
+default of c, `gpu-native` of python, and `gpu` of the other targets: see variants/shaders/src/guide/generated.md.
 
   hairis shader --model gaussian --target c > hairis_gaussian.h
   hairis shader --model chiang --target wgsl --call eval_hit --call sample_hit > chiang.wgsl
@@ -41,7 +41,7 @@ pub struct Shader {
     /// Scale every material so that it returns no more light than it receives
     #[arg(long)]
     pub conserving: bool,
-    /// Rounding of products and sums [default: exact for c, gpu for the others]
+    /// Rounding of products and sums [default: exact for c, gpu-native for python, gpu for the others]
     #[arg(long, value_enum)]
     pub arithmetic: Option<ShaderArithmetic>,
     /// Write a folder in place of standard output: a file for each model and language that the other flags leave open, a README and
@@ -63,6 +63,8 @@ pub enum ShaderTarget {
     Hlsl,
     /// The Metal shading language
     Msl,
+    /// Python over arrays of `NumPy`, JAX, `PyTorch` or Dr.Jit, which differentiate it
+    Python,
     /// SPIR-V, a compute shader per function over arrays; needs a build with the feature `spirv`
     Spirv,
 }

@@ -1,7 +1,7 @@
 //! `hairis shader --out`: writes a folder of models in every language, with an index and examples.
 
 use super::{Source, model};
-use crate::args::{Shader, ShaderTarget};
+use crate::args::{Shader, ShaderArithmetic, ShaderTarget};
 use clap::ValueEnum as _;
 use core::fmt::Write as _;
 use hairis_materials::MaterialSpec;
@@ -30,7 +30,7 @@ struct Example {
     usage: &'static str,
 }
 
-const ALL_EXAMPLES: [Example; 2] = [
+const ALL_EXAMPLES: [Example; 3] = [
     Example {
         target: ShaderTarget::C,
         file: "example.c",
@@ -42,6 +42,12 @@ const ALL_EXAMPLES: [Example; 2] = [
         file: "example.html",
         text: include_str!("folder/example.html"),
         usage: include_str!("folder/webgpu.md"),
+    },
+    Example {
+        target: ShaderTarget::Python,
+        file: "example.py",
+        text: include_str!("folder/example.py"),
+        usage: include_str!("folder/python.md"),
     },
 ];
 
@@ -155,14 +161,18 @@ fn is_of_command(readme: &str) -> bool {
     })
 }
 
-/// Returns the languages that the flags leave open. SPIR-V needs a feature of the build.
+/// Returns the languages that the flags leave open. SPIR-V needs a feature of the build, and Python another arithmetic than `fused`.
 fn targets(flags: &Shader) -> Vec<ShaderTarget> {
     if let Some(target) = flags.target {
         return vec![target];
     }
     let all = ShaderTarget::value_variants().iter().copied();
-    all.filter(|target| cfg!(feature = "spirv") || *target != ShaderTarget::Spirv)
-        .collect()
+    let is_open = |target: &ShaderTarget| match target {
+        ShaderTarget::Spirv => cfg!(feature = "spirv"),
+        ShaderTarget::Python => flags.arithmetic != Some(ShaderArithmetic::Fused),
+        _ => true,
+    };
+    all.filter(is_open).collect()
 }
 
 /// Returns the extension of a language's files.
@@ -173,6 +183,7 @@ const fn ending(target: ShaderTarget) -> &'static str {
         ShaderTarget::Glsl => "glsl",
         ShaderTarget::Hlsl => "hlsl",
         ShaderTarget::Msl => "metal",
+        ShaderTarget::Python => "py",
         ShaderTarget::Spirv => "spv",
     }
 }

@@ -112,9 +112,17 @@ impl Visitor for Source<'_> {
         let flags = self.flags;
         let arithmetic = match (flags.arithmetic, self.target) {
             (Some(ShaderArithmetic::Exact), _) | (None, ShaderTarget::C) => Target::Exact,
+            (Some(ShaderArithmetic::Fused), ShaderTarget::Python) => {
+                return Err(Error::Usage(
+                    "--arithmetic must be exact, gpu or gpu-native for python, whose frameworks have no fma that rounds once, got fused"
+                        .to_owned(),
+                ));
+            }
             (Some(ShaderArithmetic::Fused), _) => Target::Fused,
+            (Some(ShaderArithmetic::GpuNative), _) | (None, ShaderTarget::Python) => {
+                Target::GpuNative
+            }
             (Some(ShaderArithmetic::Gpu), _) | (None, _) => Target::Gpu,
-            (Some(ShaderArithmetic::GpuNative), _) => Target::GpuNative,
         };
         let mut program = Program::of_id(ModelId::of::<M>(), arithmetic);
         let functions = functions(flags, &program)?;
@@ -150,6 +158,7 @@ impl Visitor for Source<'_> {
             ShaderTarget::Glsl => Language::Glsl,
             ShaderTarget::Hlsl => Language::Hlsl,
             ShaderTarget::Msl => Language::Msl,
+            ShaderTarget::Python => Language::Python,
             ShaderTarget::Spirv => {
                 let words = spirv(&program)?;
                 return Ok((program, words));

@@ -64,13 +64,18 @@ fn every_language_has_the_functions_that_are_named() {
             "msl",
             "HairisKajiyaKayEval hairis_kajiya_kay_eval_hit(HairisKajiyaKayMaterial material, float3",
         ),
+        (
+            "python",
+            "def eval_hit(material: Material, wo: Vector, h: Array, wi: Vector, ",
+        ),
     ] {
+        let name = |function: &str| match target {
+            "python" => format!("{function}("),
+            _ => format!("hairis_kajiya_kay_{function}("),
+        };
         let all = print(&["--model", "kajiya-kay", "--target", target]);
         assert!(all.contains(call), "{target}");
-        assert!(
-            all.contains("hairis_kajiya_kay_material_brown("),
-            "{target}: presets"
-        );
+        assert!(all.contains(&name("material_brown")), "{target}: presets");
         let some = print(&[
             "--model",
             "kajiya-kay",
@@ -81,11 +86,11 @@ fn every_language_has_the_functions_that_are_named() {
             "--gradient",
         ]);
         assert!(
-            some.contains(call) && some.contains("kajiya_kay_eval_hit_gradient("),
+            some.contains(call) && some.contains(&name("eval_hit_gradient")),
             "{target}"
         );
         assert!(
-            !some.contains("hairis_kajiya_kay_sample("),
+            !some.contains(&name("sample")),
             "{target}: one function is named"
         );
     }
@@ -300,7 +305,7 @@ fn a_folder_has_every_model_in_every_language() {
         "kajiya_kay",
         "chiang",
     ] {
-        for ending in ["h", "wgsl", "glsl", "hlsl", "metal"] {
+        for ending in ["h", "wgsl", "glsl", "hlsl", "metal", "py"] {
             let file = format!("hairis_{model}.{ending}");
             assert!(out.join(&file).is_file(), "{file}");
         }
@@ -323,7 +328,7 @@ fn a_folder_has_every_model_in_every_language() {
         print(&["--model", "gaussian", "--target", "c"]) + "\n"
     );
     for word in ["MODEL", "TYPE", "VERSION", "EXPECTED"] {
-        for file in ["README.md", "example.c", "example.html"] {
+        for file in ["README.md", "example.c", "example.html", "example.py"] {
             let text = fs::read_to_string(out.join(file)).unwrap();
             assert!(!text.contains(word), "{file}: {word}");
         }
@@ -333,6 +338,41 @@ fn a_folder_has_every_model_in_every_language() {
     print(&["--out", to]);
     assert_eq!(self::names(&out), names);
     assert!(fs::metadata(out.join("example.c")).unwrap().len() > 0);
+}
+
+/// Bits are promised for `exact` alone, and `fused` needs an operation that frameworks lack.
+#[test]
+fn python_has_its_own_arithmetic_and_an_example() {
+    let flags = ["--model", "chiang", "--target", "python"];
+    let with = |word: &str| print(&[&flags[..], &["--arithmetic", word]].concat());
+    let (native, exact) = (print(&flags), with("exact"));
+    assert!(native.contains(" = o.exp2(") && native == with("gpu-native"));
+    assert!(!exact.contains(" = o.exp2(") && exact.contains("the bits of one lane"));
+    assert!(!native.contains("the bits of one lane") && native != with("gpu"));
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().to_str().unwrap();
+    for more in [&[][..], &["--out", out]] {
+        let error = refused(&[&flags[..], &["--arithmetic", "fused"], more].concat());
+        assert!(error.contains("--arithmetic must be exact, gpu or gpu-native"));
+    }
+    print(&[&flags[..], &["--arithmetic", "exact", "--out", out]].concat());
+    let files = ["README.md", "example.py", "hairis_chiang.py"];
+    assert_eq!(names(dir.path()), files);
+    let python = std::env::var("HAIRIS_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let mut example = Command::new(python);
+    example.args(["-B", "example.py"]).current_dir(dir.path());
+    let ran: Run = example.output().unwrap().into();
+    let index = fs::read_to_string(dir.path().join("README.md")).unwrap();
+    if ran.err.iter().any(|line| line.contains("named 'numpy'")) {
+        println!("NumPy is not installed: skipped");
+    } else {
+        assert!(ran.out.len() == 2 && index.contains(&ran.out.join("\n")));
+    }
+    // A folder of all languages has those that the arithmetic allows.
+    let fused = ["--model", "kajiya-kay", "--arithmetic", "fused"];
+    print(&[&fused[..], &["--out", out]].concat());
+    assert!(dir.path().join("hairis_kajiya_kay.h").exists());
+    assert!(!dir.path().join("hairis_kajiya_kay.py").exists());
 }
 
 #[test]

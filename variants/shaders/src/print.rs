@@ -2,6 +2,7 @@
 
 mod driver;
 mod operations;
+mod python;
 mod syntax;
 
 use crate::call::Call;
@@ -11,7 +12,7 @@ use crate::program::Program;
 use crate::record::{Field, Record, Shape};
 use core::fmt::Write as _;
 pub use driver::driver;
-use hairis::simd::trace::Op;
+use hairis::simd::trace::{Op, Target};
 use operations::{Form, template, write_template};
 use std::collections::HashSet;
 use syntax::head;
@@ -29,15 +30,24 @@ pub enum Language {
     Hlsl,
     /// Metal shading language.
     Msl,
+    /// Python over arrays of `NumPy`, JAX, `PyTorch` or Dr.Jit.
+    Python,
 }
 
 impl Language {
     /// Every language in which programs are printed.
-    pub const ALL: [Self; 5] = [Self::C, Self::Wgsl, Self::Glsl, Self::Hlsl, Self::Msl];
+    pub const ALL: [Self; 6] = [
+        Self::C,
+        Self::Wgsl,
+        Self::Glsl,
+        Self::Hlsl,
+        Self::Msl,
+        Self::Python,
+    ];
 
     /// Returns true if compilers may reassociate sums, and the language has no keyword that forbids it.
     const fn takes_sums_apart(self) -> bool {
-        matches!(self, Self::Wgsl | Self::Msl)
+        matches!(self, Self::Wgsl | Self::Msl | Self::Python)
     }
 
     /// Returns the type of a form of field, and the text that follows the field's name.
@@ -45,6 +55,8 @@ impl Language {
         match (self, shape) {
             (Self::Wgsl, Shape::Number) => ("f32".to_owned(), String::new()),
             (Self::Wgsl, Shape::Array(len)) => (format!("array<f32, {len}>"), String::new()),
+            (Self::Python, Shape::Number) => ("Array".to_owned(), String::new()),
+            (Self::Python, Shape::Array(_)) => (self.vector().to_owned(), String::new()),
             (_, Shape::Number) => ("float".to_owned(), String::new()),
             (_, Shape::Array(len)) => ("float".to_owned(), format!("[{len}]")),
             (_, Shape::Vector) => (self.vector().to_owned(), String::new()),
@@ -57,6 +69,7 @@ impl Language {
             Self::Wgsl => "vec3<f32>",
             Self::Glsl => "vec3",
             Self::Hlsl | Self::Msl => "float3",
+            Self::Python => "Vector",
         }
     }
 
@@ -70,18 +83,25 @@ impl Language {
             // Compilers keep the order of arithmetic whose results are declared precise.
             (Self::Glsl | Self::Hlsl, false) => "precise float",
             (Self::Glsl | Self::Hlsl, true) => "bool",
+            (Self::Python, _) => "",
         }
     }
 
     /// Returns a number as a literal that every compiler reads as exactly this float. Infinity and NaN have no literal in any language,
-    /// so that a helper makes them from their bits.
+    /// so that a helper makes them from their bits, or Python's `math` has their names.
     fn literal(self, x: f32, prefix: &str) -> String {
+        if !x.is_finite() && self == Self::Python {
+            return format!("{x}").to_lowercase();
+        }
         if !x.is_finite() {
             return format!("{prefix}number(0x{:08x}u)", x.to_bits());
         }
         let short = format!("{x:?}");
         let is_exact = short.parse::<f64>() == Ok(f64::from(x));
-        if is_exact && !short.contains('e') {
+        if self == Self::Python {
+            // Its numbers are double, and double keeps nine digits apart.
+            if is_exact { short } else { format!("{x:.8e}") }
+        } else if is_exact && !short.contains('e') {
             format!("{short}f")
         } else if self == Self::Wgsl {
             // WGSL rejects decimal literals above the largest float, even if they round to it.
@@ -113,7 +133,11 @@ fn prefix(program: &Program) -> String {
 
 /// Returns the name of the type of a record: `HairisGaussianMaterial`.
 fn type_name(program: &Program, record: &Record) -> String {
-    let name = format!("hairis_{}_{}", program.name(), record.name);
+    capitals(&format!("hairis_{}_{}", program.name(), record.name))
+}
+
+/// Returns a name of words as a name of a type: `KajiyaKay`.
+fn capitals(name: &str) -> String {
     let capital = |word: &str| {
         let (first, rest) = word.split_at(word.len().min(1));
         first.to_uppercase() + rest
@@ -122,31 +146,51 @@ fn type_name(program: &Program, record: &Record) -> String {
 }
 
 /// Prints a program as source text: its types, materials and functions, which need no other file.
+///
+/// # Panics
+///
+/// Panics for Python if the program was traced for [`Target::Fused`], because array frameworks have no operation that rounds once.
 #[must_use]
 pub fn print(program: &Program, language: Language) -> String {
+    if language == Language::Python {
+        assert_ne!(
+            program.target(),
+            Target::Fused,
+            "array frameworks have no fma that rounds once"
+        );
+        return python::print(program);
+    }
     let mut out = head(program, language);
-    let mut known = Vec::new();
-    let constants = program.presets().iter().chain(program.materials());
-    for function in constants.chain(program.functions()) {
-        let records = function
-            .arguments()
-            .iter()
-            .filter_map(|argument| match argument {
-                Argument::Record(_, record) => Some(record),
-                Argument::Field(_) => None,
-            });
-        for record in records.chain([function.output()]) {
-            if !known.contains(&record) {
-                declare(&mut out, program, language, record);
-                known.push(record);
-            }
+    each(program, |function, records| {
+        for record in records {
+            declare(&mut out, program, language, record);
         }
         Body::new(program, language, function).print(&mut out);
-    }
+    });
     if language == Language::C {
         out.push_str("#endif\n");
     }
     out
+}
+
+/// Visits the functions in the order of their text, each with the records that no function before it has.
+fn each<'a>(program: &'a Program, mut visit: impl FnMut(&'a Function, Vec<&'a Record>)) {
+    let mut known = Vec::new();
+    let constants = program.presets().iter().chain(program.materials());
+    for function in constants.chain(program.functions()) {
+        let records = (function.arguments().iter()).filter_map(|argument| match argument {
+            Argument::Record(_, record) => Some(record),
+            Argument::Field(_) => None,
+        });
+        let mut new = Vec::new();
+        for record in records.chain([function.output()]) {
+            if !known.contains(&record) {
+                known.push(record);
+                new.push(record);
+            }
+        }
+        visit(function, new);
+    }
 }
 
 fn declare(out: &mut String, program: &Program, language: Language, record: &Record) {
@@ -209,13 +253,38 @@ impl<'a> Body<'a> {
             program,
             language,
             function,
-            inputs: function.inputs(),
-            prefix: prefix(program),
+            inputs: match language {
+                Language::Python => python::inputs(function),
+                _ => function.inputs(),
+            },
+            prefix: match language {
+                Language::Python => "o.".to_owned(),
+                _ => prefix(program),
+            },
         }
     }
 
     fn print(&self, out: &mut String) {
         self.signature(out);
+        self.statements(
+            |comment| format!("    // {comment}\n"),
+            out,
+            |binding, name, value| format!("    {binding} {name} = {value};\n"),
+        );
+        let results = self.function.results();
+        for (place, result) in self.function.output().places().zip(results) {
+            let _ = writeln!(out, "    result.{place} = {};", self.name(*result));
+        }
+        out.push_str("    return result;\n}\n\n");
+    }
+
+    /// Prints the operations in their order, below comments on their stages.
+    fn statements(
+        &self,
+        comment_line: impl Fn(&str) -> String,
+        out: &mut String,
+        line: impl Fn(&str, &str, &str) -> String,
+    ) {
         let (mut last, schedule) = (None, self.function.schedule());
         let operands = schedule.iter().flat_map(|place| self.operands(*place));
         let read: HashSet<u32> = operands
@@ -224,18 +293,12 @@ impl<'a> Body<'a> {
         for place in schedule.into_iter().filter(|place| read.contains(place)) {
             let now = comment(self.function.graph().origin(place));
             if now.is_some() && now != last {
-                let _ = writeln!(out, "    // {}", now.as_deref().unwrap_or_default());
+                *out += &comment_line(now.as_deref().unwrap_or_default());
                 last = now;
             }
-            let value = self.value(place);
             let (binding, name) = (self.binding(place), self.name(place));
-            let _ = writeln!(out, "    {binding} {name} = {value};");
+            *out += &line(binding, &name, &self.value(place));
         }
-        let results = self.function.results();
-        for (place, result) in self.function.output().places().zip(results) {
-            let _ = writeln!(out, "    result.{place} = {};", self.name(*result));
-        }
-        out.push_str("    return result;\n}\n\n");
     }
 
     fn signature(&self, out: &mut String) {
@@ -300,7 +363,7 @@ impl<'a> Body<'a> {
     /// Returns the number that the mask at a place tests for NaN, in languages whose drivers ignore NaN in comparisons.
     fn tested(&self, place: u32) -> Option<u32> {
         let tested = self.function.graph().tested_number(place);
-        tested.filter(|_| self.language != Language::C)
+        tested.filter(|_| !matches!(self.language, Language::C | Language::Python))
     }
 
     /// Returns the places of the numbers and masks that the text of a value reads.
@@ -323,6 +386,9 @@ impl<'a> Body<'a> {
                 self.language.literal(f32::from_bits(bits), &self.prefix)
             }
             Kind::Mask(mask) if self.language == Language::C => i32::from(mask).to_string(),
+            Kind::Mask(mask) if self.language == Language::Python => {
+                if mask { "True" } else { "False" }.to_owned()
+            }
             Kind::Mask(mask) => mask.to_string(),
             Kind::Input(input) => self.inputs[input as usize].clone(),
             Kind::Op(_) => format!("{}{place}", if node.is_mask() { 'm' } else { 'x' }),

@@ -8,6 +8,7 @@ mod languages;
 mod material;
 mod names;
 mod operations;
+mod python;
 mod records;
 mod support;
 mod traps;

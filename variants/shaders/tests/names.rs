@@ -46,9 +46,17 @@ fn accepted_names_are_identifiers_of_their_own() {
         for language in Language::ALL {
             let text = print(&program, language);
             let words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
-            let ours: Vec<_> = words
-                .filter(|word| word.to_lowercase().starts_with("hairis"))
-                .collect();
+            // A module of Python is a name space of its own.
+            let prefix = if language == Language::Python {
+                String::new()
+            } else {
+                format!("hairis_{name}_")
+            };
+            let is_ours = |word: &&str| {
+                let word = word.to_lowercase();
+                word.starts_with("hairis") || word.starts_with("material_")
+            };
+            let ours: Vec<_> = words.filter(is_ours).collect();
             for word in &ours {
                 assert!(
                     !word.contains("__") && !word.ends_with('_'),
@@ -56,7 +64,7 @@ fn accepted_names_are_identifiers_of_their_own() {
                 );
             }
             for material in ACCEPTED {
-                let function = format!("hairis_{name}_material_{material}");
+                let function = format!("{prefix}material_{material}");
                 let found = ours.iter().filter(|word| **word == function).count();
                 assert_eq!(found, 1, "{language:?}: {function}");
             }

@@ -10,7 +10,7 @@ use hairis_shaders::{Kind, Language, Program, Rounding, Target, every_operation,
 
 /// Returns operands of every kind. Denormals are left out, because targets may flush them. Halves are left out, because WGSL rounds them
 /// the other way in sums with 2^23 and an odd number.
-fn operands() -> Vec<f32> {
+pub(crate) fn operands() -> Vec<f32> {
     let special = [
         0.0,
         -0.0,
@@ -38,7 +38,7 @@ fn operands() -> Vec<f32> {
 }
 
 /// Returns the results of the graph, one entry per triple of operands.
-fn expected(program: &Program, rounding: Rounding) -> Vec<Vec<f32>> {
+pub(crate) fn expected(program: &Program, rounding: Rounding) -> Vec<Vec<f32>> {
     let function = &program.functions()[0];
     let all = operands();
     let (triples, _) = all.as_chunks::<3>();
@@ -48,7 +48,7 @@ fn expected(program: &Program, rounding: Rounding) -> Vec<Vec<f32>> {
         .collect()
 }
 
-fn check(program: &Program, got: &[f32], expected: &[Vec<f32>], language: &str) {
+pub(crate) fn check(program: &Program, got: &[f32], expected: &[Vec<f32>], language: &str) {
     let function = &program.functions()[0];
     if differing(function, got, expected) == 0 {
         return;

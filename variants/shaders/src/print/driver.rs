@@ -1,6 +1,6 @@
 //! Entry points that run functions of a program over arrays of numbers.
 
-use super::{Language, prefix, type_name};
+use super::{Language, prefix, python, type_name};
 use crate::function::{Argument, Function};
 use crate::program::Program;
 use crate::record::Field;
@@ -12,6 +12,7 @@ use crate::record::Field;
 /// - GLSL: `main` of the last function alone, over the same buffers of a Vulkan shader.
 /// - C: `main` takes the name of a function, reads standard input and writes standard output. Compiled as CUDA, it runs the function on
 ///   the GPU, one thread per call.
+/// - Python: likewise with `NumPy`.
 ///
 /// # Panics
 ///
@@ -22,6 +23,7 @@ pub fn driver(program: &Program, language: Language) -> String {
         Language::C => c(program),
         Language::Wgsl => wgsl(program),
         Language::Glsl => glsl(program),
+        Language::Python => python(program),
         Language::Hlsl | Language::Msl => panic!("no driver runs {language:?}"),
     }
 }
@@ -161,4 +163,37 @@ fn c(program: &Program) -> String {
          size_t in = 0, out = 0, n = 0, room = 1u << 20;\n    \
          float *inputs = (float *)malloc(room * sizeof(float)), *outputs;\n    if (argc < 2) return 2;\n{calls}{C_MAIN}"
     )
+}
+
+/// End of the driver in Python, after `CALLS` has the function of a name and the forms of its arguments.
+const PYTHON_MAIN: &str = "
+
+def _flat(value: Any) -> Iterator[Any]:
+    for entry in value:
+        yield from _flat(entry) if isinstance(entry, tuple) else [entry]
+
+
+if __name__ == \"__main__\":
+    import sys
+
+    import numpy
+
+    call, forms = CALLS[sys.argv[1]]
+    sizes = [size for form in forms for size in (_SIZES[form] if isinstance(form, type) else (form,))]
+    inputs = numpy.frombuffer(sys.stdin.buffer.read(), numpy.float32)
+    numbers = iter(inputs.reshape(-1, sum(max(size, 1) for size in sizes)).T)
+    results = call(*(_make(form, numbers) for form in forms))
+    sys.stdout.buffer.write(numpy.stack(list(_flat(results)), axis=-1).tobytes())
+";
+
+fn python(program: &Program) -> String {
+    let mut out = "\n\nCALLS: dict[str, Any] = {\n".to_owned();
+    for function in program.functions() {
+        let forms: String = (function.arguments().iter())
+            .map(|argument| python::form(argument) + ", ")
+            .collect();
+        let name = function.name();
+        out += &format!("    \"{name}\": ({name}, ({forms})),\n");
+    }
+    out + "}\n" + PYTHON_MAIN
 }

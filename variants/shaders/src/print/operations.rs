@@ -1,5 +1,5 @@
 //! Table of operations per language. In a template, `$a`, `$b` and `$c` stand for the operands, and `$p` for the prefix of the names of
-//! the model's helpers.
+//! the model's helpers: in Python the object `o` of a framework.
 
 use super::Language;
 use hairis::simd::trace::Op;
@@ -20,7 +20,7 @@ pub(super) enum Form {
 
 /// Returns the template of an operation.
 pub(super) fn template(language: Language, op: Op, form: Form) -> &'static str {
-    use Language::{C, Glsl, Hlsl, Msl, Wgsl};
+    use Language::{C, Glsl, Hlsl, Msl, Python, Wgsl};
     if language.takes_sums_apart()
         && let Form::Rounds(operand) = form
     {
@@ -31,10 +31,21 @@ pub(super) fn template(language: Language, op: Op, form: Form) -> &'static str {
             (Msl, Op::Add, 0) => return "$a + rint($b)",
             (Msl, Op::Add, 1) => return "rint($a) + $b",
             (Msl, Op::MulAdd, 2) => return "rint($a * $b) + $c",
+            (Python, Op::Add, 0) => return "$prounded($a, $b)",
+            (Python, Op::Add, 1) => return "$prounded($b, $a)",
+            (Python, Op::MulAdd, 2) => return "$prounded($c, $a * $b)",
             _ => {}
         }
     }
     match (language, op) {
+        (Python, Op::Less) => "$a < $b",
+        (Python, Op::MulAdd) => "$pfma($a, $b, $c)",
+        (Python, Op::Exp2) => "$pexp2($a)",
+        (Python, Op::Log2) => "$plog2($a)",
+        (Python, Op::Sqrt) => "$psqrt($a)",
+        (Python, Op::Abs) => "$pabs($a)",
+        (Python, Op::Not) => "~$a",
+        (Python, Op::Select) => "$pselect($a, $b, $c)",
         (C, Op::Less) if form == Form::BelowInfinity => "$a <= 3.40282347e+38f",
         (_, Op::Less) if form == Form::BelowInfinity => "$pis_below_infinity($a)",
         (_, Op::Constant(_)) => unreachable!("constants are literals"),
@@ -72,9 +83,9 @@ pub(super) fn template(language: Language, op: Op, form: Form) -> &'static str {
         (_, Op::Upper) => "$pupper($a)",
         (_, Op::Less) => "$a < $b",
         (_, Op::AtLeast) => "$a >= $b",
-        (C | Wgsl, Op::And) => "$a & $b",
+        (C | Wgsl | Python, Op::And) => "$a & $b",
         (Glsl | Hlsl | Msl, Op::And) => "$a && $b",
-        (C | Wgsl, Op::Or) => "$a | $b",
+        (C | Wgsl | Python, Op::Or) => "$a | $b",
         (Glsl | Hlsl | Msl, Op::Or) => "$a || $b",
         (_, Op::Not) => "!$a",
         (Wgsl, Op::Select) => "select($c, $b, $a)",
