@@ -133,6 +133,12 @@ for example in furnace.c furnace.cpp pbrt_hair.cpp resample.cpp; do
   tail -2 "$work/example.log"
 done
 
+for exceptions in -fexceptions '-fno-exceptions -fno-rtti'; do
+  g++ -std=c++17 $exceptions -O2 -Wall -Wextra -pedantic -Werror "$capi/tests/reporting.cpp" -o "$work/reporting" \
+    $(pkg-config --cflags --libs hairis)
+  LD_LIBRARY_PATH=$prefix/lib "$work/reporting"
+done
+
 part 'two Rust libraries'
 rustc --edition 2024 --crate-type staticlib -O "$capi/tests/other.rs" -o "$work/libother.a"
 other=$work/libother.a hairis=$prefix/lib/libhairis.a

@@ -1,7 +1,14 @@
 /* hairis: hair scattering for renderers. C interface, version 1.
  *
  * Ownership. Every struct is plain data of the caller: memcpy copies it, nothing needs to be destroyed, and the library allocates
- * nothing. A material or BSDF whose bytes are all zero scatters nothing. Handles are valid only in the process that made them.
+ * nothing. Handles, which are materials and BSDFs, are valid only in the process that made them.
+ *
+ * Empty handles. A material or BSDF whose bytes are all zero scatters nothing in any call, over hits as well: values, densities, weights
+ * and albedos are 0, and samples are discarded. This is no error.
+ *
+ * Alignment. Handles lie at multiples of 16 bytes, as compilers place them. malloc does so on most systems, but a memory pool of the host
+ * may not. A handle at another address, or whose first number is of no model, is HAIRIS_ARGUMENT where a function returns hairis_status.
+ * Other functions take such a handle for an empty one, and write nothing there.
  *
  * Threads. Calls share no state except the features of the CPU. Any number of calls may run at once, as long as none of them writes
  * data that another call reads.
@@ -11,8 +18,8 @@
  * densities are per steradian. A weight is S cos(theta_i) / pdf, where cos(theta_i) = sqrt(v^2 + w^2). Angles are in radians.
  * Non-finite directions evaluate to zero.
  *
- * Pointers must not be NULL unless a comment allows it. Columns hold n numbers each, at any alignment; an output must not overlap
- * any other column.
+ * Pointers must not be NULL unless a comment allows it. Columns hold n numbers each, at any address of a float; an output must not
+ * overlap any other column.
  *
  * Errors. Only functions that return hairis_status report errors. On an error, a function writes at most to *error, which may be
  * NULL, and nowhere else. With n = 0 a call succeeds whatever its pointers are. */
@@ -41,7 +48,8 @@ enum {
   HAIRIS_OK = 0,
   HAIRIS_NAME = 1,    /* there is no such model, choice, preset, field or word */
   HAIRIS_VALUE = 2,   /* a value is out of its range, or the field has another count of numbers */
-  HAIRIS_ARGUMENT = 3 /* a pointer is NULL, a code is unknown, a handle is empty, or an index is out of range */
+  HAIRIS_ARGUMENT = 3 /* a pointer is NULL, a code is unknown, a handle is misplaced or not of the library, or an index is
+                        * out of range */
 };
 enum {
   HAIRIS_ENERGY_RAW = 0,        /* the model as it is: the published model may return more light than arrives */

@@ -1,21 +1,33 @@
 // hairis for C++17: materials and BSDFs as value types over hairis.h.
 //
-// Set-up throws hairis::Error; calls per hit and per direction are noexcept. Copies are memcpy, and nothing needs to be destroyed.
+// Set-up throws hairis::Error, or reports to a hairis_error that is passed last and throws nothing. That error begins as {}, and calls do
+// nothing once it has a code, so that one check behind several calls finds the first error. Without exceptions (-fno-exceptions) only the
+// calls that report are declared. Calls per hit and per direction are noexcept. Copies are memcpy, and nothing needs to be destroyed.
 #ifndef HAIRIS_HPP
 #define HAIRIS_HPP
 
 #include "hairis.h"
 
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+#define HAIRIS_THROWS 1
+#else
+#define HAIRIS_THROWS 0
+#endif
+
 #include <array>
 #include <cstddef>
+#include <cstdio>
 #include <initializer_list>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
+#if HAIRIS_THROWS
+#include <stdexcept>
+#endif
 
 namespace hairis {
 
+#if HAIRIS_THROWS
 /// Error of set-up: what() is a sentence, and the other members say what is at fault.
 class Error : public std::runtime_error {
  public:
@@ -29,12 +41,30 @@ class Error : public std::runtime_error {
  private:
   hairis_error error_;
 };
+#endif
 
 enum class Energy : uint32_t {
   Raw = HAIRIS_ENERGY_RAW,
   Conserving = HAIRIS_ENERGY_CONSERVING,
   Scaled = HAIRIS_ENERGY_SCALED,
 };
+
+namespace detail {
+/// Runs set-up that reports to an error, unless that has a code already.
+template <class Call>
+void report(hairis_error &error, Call call) noexcept {
+  if (error.code == HAIRIS_OK) call(&error);
+}
+#if HAIRIS_THROWS
+/// Runs set-up that reports to an error, and throws what it reports.
+template <class Call>
+void check(Call call) {
+  hairis_error error{};
+  call(error);
+  if (error.code != HAIRIS_OK) throw Error(error);
+}
+#endif
+}  // namespace detail
 
 /// Model of the library with its fields and presets, as a host's interface presents it.
 struct Model {
@@ -44,12 +74,20 @@ struct Model {
 
   static std::vector<Model> all() {
     std::vector<Model> models(hairis_model_count());
-    for (uint32_t m = 0; m < models.size(); ++m) models[m] = at(m);
+    hairis_error error{};
+    for (uint32_t m = 0; m < models.size(); ++m) models[m] = at(m, error);
     return models;
   }
-  static Model at(uint32_t index) {
+  /// Returns the model of an index, or reports that there is none.
+  static Model at(uint32_t index, hairis_error &error) {
     Model model;
-    if (hairis_model_describe(index, &model.info) != HAIRIS_OK) throw std::out_of_range("hairis: no model of this index");
+    if (error.code != HAIRIS_OK) return model;
+    if (hairis_model_describe(index, &model.info) != HAIRIS_OK) {
+      error = hairis_error{HAIRIS_ARGUMENT, -1, 0, "index", ""};
+      std::snprintf(error.message, sizeof error.message, "index must be below %u, the count of models, got %u",
+                    static_cast<unsigned>(hairis_model_count()), static_cast<unsigned>(index));
+      return model;
+    }
     model.fields.resize(model.info.fields);
     for (uint32_t f = 0; f < model.info.fields; ++f) hairis_field_describe(index, f, &model.fields[f]);
     for (uint32_t p = 0; p < model.info.presets; ++p) {
@@ -59,46 +97,71 @@ struct Model {
     }
     return model;
   }
+#if HAIRIS_THROWS
+  static Model at(uint32_t index) {
+    Model model;
+    detail::check([&](hairis_error &error) { model = at(index, error); });
+    return model;
+  }
+#endif
 };
 
 /// Values of a model's fields, by name.
 class Params {
  public:
   /// Makes parameters of a model. choice is the word of the sampler, or of the model's other choice, and preset is a name; both may be
-  /// nullptr.
+  /// nullptr. Parameters that are refused are empty, and no material is made of them.
+  Params(const char *model, const char *choice, const char *preset, hairis_error &error) noexcept {
+    detail::report(error, [&](hairis_error *to) {
+      if (hairis_abi_version() == HAIRIS_ABI_VERSION) {
+        hairis_params_init(&params_, model, choice, preset, to);
+        return;
+      }
+      *to = hairis_error{HAIRIS_ARGUMENT, -1, 0, "", ""};
+      std::snprintf(to->message, sizeof to->message, "hairis: the library has interface %u, the header %u",
+                    static_cast<unsigned>(hairis_abi_version()), static_cast<unsigned>(HAIRIS_ABI_VERSION));
+    });
+  }
+  Params &set(const char *field, std::initializer_list<float> numbers, hairis_error &error) noexcept {
+    return set(field, numbers.begin(), numbers.size(), error);
+  }
+  Params &set(const char *field, float number, hairis_error &error) noexcept { return set(field, &number, 1, error); }
+  Params &set(const char *field, const float *numbers, size_t count, hairis_error &error) noexcept {
+    detail::report(error, [&](hairis_error *to) { hairis_params_set(&params_, field, numbers, count, to); });
+    return *this;
+  }
+  Params &set(const char *field, const char *word, hairis_error &error) noexcept {
+    detail::report(error, [&](hairis_error *to) { hairis_params_set_word(&params_, field, word, to); });
+    return *this;
+  }
+  Params &set(const hairis_artist &controls, hairis_error &error) noexcept {
+    detail::report(error, [&](hairis_error *to) { hairis_params_set_artist(&params_, &controls, to); });
+    return *this;
+  }
+#if HAIRIS_THROWS
   explicit Params(const char *model, const char *choice = nullptr, const char *preset = nullptr) {
-    if (hairis_abi_version() != HAIRIS_ABI_VERSION) {
-      throw std::runtime_error("hairis: the library has interface " + std::to_string(hairis_abi_version()) +
-                               ", the header " + std::to_string(HAIRIS_ABI_VERSION));
-    }
-    hairis_error error{};
-    check(hairis_params_init(&params_, model, choice, preset, &error), error);
+    detail::check([&](hairis_error &error) { *this = Params(model, choice, preset, error); });
   }
   Params &set(const char *field, std::initializer_list<float> numbers) {
     return set(field, numbers.begin(), numbers.size());
   }
   Params &set(const char *field, float number) { return set(field, &number, 1); }
   Params &set(const char *field, const float *numbers, size_t count) {
-    hairis_error error{};
-    check(hairis_params_set(&params_, field, numbers, count, &error), error);
+    detail::check([&](hairis_error &error) { set(field, numbers, count, error); });
     return *this;
   }
   Params &set(const char *field, const char *word) {
-    hairis_error error{};
-    check(hairis_params_set_word(&params_, field, word, &error), error);
+    detail::check([&](hairis_error &error) { set(field, word, error); });
     return *this;
   }
   Params &set(const hairis_artist &controls) {
-    hairis_error error{};
-    check(hairis_params_set_artist(&params_, &controls, &error), error);
+    detail::check([&](hairis_error &error) { set(controls, error); });
     return *this;
   }
   Model model() const { return Model::at(params_.model); }
+#endif
+  Model model(hairis_error &error) const { return Model::at(params_.model, error); }
   const hairis_params &get() const noexcept { return params_; }
-
-  static void check(hairis_status status, const hairis_error &error) {
-    if (status != HAIRIS_OK) throw Error(error);
-  }
 
  private:
   hairis_params params_{};
@@ -152,10 +215,17 @@ class Bsdf {
 class Material {
  public:
   Material() = default;
-  explicit Material(const Params &params, Energy energy = Energy::Conserving) {
-    hairis_error error{};
-    Params::check(hairis_material_init(&material_, &params.get(), static_cast<uint32_t>(energy), &error), error);
+  /// Makes a material, which stays empty if the parameters are refused.
+  Material(const Params &params, Energy energy, hairis_error &error) noexcept {
+    detail::report(error, [&](hairis_error *to) {
+      hairis_material_init(&material_, &params.get(), static_cast<uint32_t>(energy), to);
+    });
   }
+#if HAIRIS_THROWS
+  explicit Material(const Params &params, Energy energy = Energy::Conserving) {
+    detail::check([&](hairis_error &error) { *this = Material(params, energy, error); });
+  }
+#endif
   Bsdf prepare(std::array<float, 3> wo, float h = 0) const noexcept { return Bsdf(material_, wo, h); }
   float max_albedo() const noexcept { return hairis_material_max_albedo(&material_); }
   const hairis_material &get() const noexcept { return material_; }

@@ -3,7 +3,7 @@
 //! Each call has one kernel per model, which writes every column; columns that the host leaves out go to a scratch buffer. One
 //! kernel per set of columns, as in the Rust interface, would double the size of the library.
 
-use crate::handles::{bsdf, model_at};
+use crate::handles::{bsdf, is_handle, model_of};
 use crate::layout::{
     ARGUMENT, Candidates, Choice, Counts, Evals, OK, PARTITION_ALL, PARTITION_BALANCE,
     PARTITION_POWER, RawBsdf, Samples, Weights,
@@ -126,6 +126,25 @@ unsafe fn in_chunks<const N: usize>(
     }
 }
 
+/// Writes what an empty handle scatters, which is nothing: all columns of an evaluation, of samples or of candidates are 0, except that
+/// of the lobes, which is that of discarded samples.
+///
+/// # Safety
+///
+/// Each column is null or has `n` numbers, which nothing else refers to.
+pub(crate) unsafe fn write_nothing<const N: usize>(to: &[*mut f32; N], n: usize) {
+    const LOBE: usize = 10;
+    for (place, column) in to
+        .iter()
+        .enumerate()
+        .filter(|(_, column)| !column.is_null())
+    {
+        let number = if place == LOBE { -1.0 } else { 0.0 };
+        // SAFETY: the caller's promise.
+        unsafe { output(*column, n) }.fill(number);
+    }
+}
+
 /// Sets the directions of discarded samples, whose density is 0, to zero.
 pub(crate) unsafe fn discard(wi: &[*mut f32; 3], pdf: &[f32], count: usize) {
     for (row, pdf) in pdf.iter().take(count).enumerate() {
@@ -153,9 +172,15 @@ pub unsafe extern "C" fn hairis_eval_columns(
         return ARGUMENT;
     }
     // SAFETY: the caller's promise.
-    let (id, wi, to) = unsafe { (model_at(raw), wi.read(), evals(&*to)) };
-    let (Some(id), true) = (id, are_there(wi, n)) else {
+    let (id, wi, to) = unsafe { (model_of(raw), wi.read(), evals(&*to)) };
+    // SAFETY: the caller's promise.
+    if !unsafe { is_handle(raw) } || !are_there(wi, n) {
         return ARGUMENT;
+    }
+    let Some(id) = id else {
+        // SAFETY: the caller's promise.
+        unsafe { write_nothing(&to, n) };
+        return OK;
     };
     visit!(id, M, (raw: *const RawBsdf, n: usize, wi: [*const f32; 3], to: [*mut f32; 4]) -> (), {
         // SAFETY: the tag is the model's.
@@ -185,9 +210,15 @@ pub unsafe extern "C" fn hairis_sample_columns(
         return ARGUMENT;
     }
     // SAFETY: the caller's promise.
-    let (id, xi, to) = unsafe { (model_at(raw), xi.read(), samples(&*to)) };
-    let (Some(id), true) = (id, are_there(xi, n)) else {
+    let (id, xi, to) = unsafe { (model_of(raw), xi.read(), samples(&*to)) };
+    // SAFETY: the caller's promise.
+    if !unsafe { is_handle(raw) } || !are_there(xi, n) {
         return ARGUMENT;
+    }
+    let Some(id) = id else {
+        // SAFETY: the caller's promise.
+        unsafe { write_nothing(&to, n) };
+        return OK;
     };
     visit!(id, M, (raw: *const RawBsdf, n: usize, xi: [*const f32; 3], to: [*mut f32; 11]) -> (), {
         // SAFETY: the tag is the model's.
@@ -236,9 +267,18 @@ pub unsafe extern "C" fn hairis_weigh_columns(
         return ARGUMENT;
     }
     // SAFETY: the caller's promise.
-    let (id, columns) = unsafe { (model_at(raw), weigh_columns(&*from, &*to)) };
-    let (Some(id), true) = (id, are_there(columns, n)) else {
+    let (id, columns) = unsafe { (model_of(raw), weigh_columns(&*from, &*to)) };
+    // SAFETY: the caller's promise.
+    if !unsafe { is_handle(raw) } || !are_there(columns, n) {
         return ARGUMENT;
+    }
+    let Some(id) = id else {
+        // SAFETY: the caller's promise.
+        unsafe {
+            let [r, g, b] = (*to).contribution;
+            write_nothing(&[r, g, b, (*to).weight], n);
+        }
+        return OK;
     };
     let counts = resample::Counts {
         bsdf: counts.bsdf,

@@ -1,6 +1,6 @@
 //! Handles as the host stores them: a head with the model's tag, and the Rust handle behind it. Every material has the constants that
 //! conserve energy, although they change nothing in a raw material, because a second type would double the code. Only calls on hits
-//! leave them out.
+//! leave them out. A handle whose tag is 0 is empty, and scatters nothing in any call.
 
 use crate::layout::{BSDF_SIZE, HEAD_SIZE, MATERIAL_SIZE, RawBsdf, RawMaterial};
 use crate::models::tagged;
@@ -31,24 +31,30 @@ pub(crate) const fn assert_fits<M: Registered>() {
     }
 }
 
-/// Returns the model of a material, or `None` if the material is empty.
+/// Returns true if a handle lies where one can, and is empty or has the tag of a model.
 #[inline(always)]
-pub(crate) unsafe fn model_of(material: *const RawMaterial) -> Option<ModelId> {
-    // SAFETY: the caller's promise.
-    tagged(unsafe { (&raw const (*material).head).cast::<u32>().read() })
+pub(crate) unsafe fn is_handle<T>(handle: *const T) -> bool {
+    handle.is_aligned() && {
+        // SAFETY: the caller's promise; every handle begins with its tag.
+        let tag = unsafe { handle.cast::<u32>().read() };
+        tag == 0 || tagged(tag).is_some()
+    }
+}
+
+/// Returns the model of a material or a BSDF, or `None` if the handle is empty, or none at all.
+#[inline(always)]
+pub(crate) unsafe fn model_of<T>(handle: *const T) -> Option<ModelId> {
+    if !handle.is_aligned() {
+        return None;
+    }
+    // SAFETY: the caller's promise; every handle begins with its tag.
+    tagged(unsafe { handle.cast::<u32>().read() })
 }
 
 /// Returns true if a material does not conserve energy.
 pub(crate) unsafe fn is_raw(material: *const RawMaterial) -> bool {
     // SAFETY: the caller's promise.
     unsafe { (*material).head[1] == 1 }
-}
-
-/// Returns the model of a BSDF, or `None` if the BSDF is empty.
-#[inline(always)]
-pub(crate) unsafe fn model_at(bsdf: *const RawBsdf) -> Option<ModelId> {
-    // SAFETY: the caller's promise.
-    tagged(unsafe { (&raw const (*bsdf).head).cast::<u32>().read() })
 }
 
 /// Returns the material of a handle whose tag is the tag of `M`.

@@ -2,9 +2,9 @@
 //! Rust interface.
 
 use crate::columns::{
-    CHUNK, are_candidates, are_there, discard, evals, input, input3, output, samples,
+    CHUNK, are_candidates, are_there, discard, evals, input, input3, output, samples, write_nothing,
 };
-use crate::handles::{is_raw, material, model_of};
+use crate::handles::{is_handle, is_raw, material, model_of};
 use crate::layout::{ARGUMENT, Evals, Hits, OK, RawMaterial, Samples};
 use crate::models::visit;
 use core::ptr;
@@ -145,13 +145,15 @@ unsafe fn run_all(materials: *const RawMaterial, index: Option<&[u32]>, rows: &R
     }
 }
 
-/// Runs a call over hits on the material at `index`; an empty material is skipped.
+/// Runs a call over hits on the material at `index`, which scatters nothing if it is empty.
 unsafe fn run_one(materials: *const RawMaterial, index: u32, rows: &Rows, n: usize) {
     // SAFETY: the caller's promise: indices are checked.
     unsafe {
         let material = materials.add(index as usize);
-        if let Some(id) = model_of(material) {
-            run(id, material, rows, n);
+        match (model_of(material), rows.call) {
+            (Some(id), _) => run(id, material, rows, n),
+            (None, Call::Eval(to)) => write_nothing(&to, n),
+            (None, Call::Sample(to)) => write_nothing(&to, n),
         }
     }
 }
@@ -214,8 +216,7 @@ unsafe fn call(
     // SAFETY: the caller's promise.
     let index = (!hits.index.is_null()).then(|| unsafe { from_raw_parts(hits.index, n) });
     // SAFETY: the caller's promise: there are `count` materials.
-    let is_known =
-        |index: usize| index < count && unsafe { model_of(materials.add(index)) }.is_some();
+    let is_known = |index: usize| index < count && unsafe { is_handle(materials.add(index)) };
     let all_known = match index {
         None => is_known(0),
         Some(index) => index.iter().all(|index| is_known(*index as usize)),

@@ -66,7 +66,7 @@ constants! {
     NAME: i32 = 1, "HAIRIS_NAME";
     /// Status if a value is out of its range, or if a field has another count of numbers.
     VALUE: i32 = 2, "HAIRIS_VALUE";
-    /// Status if a pointer is null, a code is unknown, a handle is empty or an index is out of range.
+    /// Status if a pointer is null, a code is unknown, a handle is not of the library or an index is out of range.
     ARGUMENT: i32 = 3, "HAIRIS_ARGUMENT";
     /// Energy of the model as it is.
     ENERGY_RAW: u32 = 0, "HAIRIS_ENERGY_RAW";

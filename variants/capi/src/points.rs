@@ -1,6 +1,6 @@
 //! Calls on one hit and on one direction: they take numbers and return structs by value.
 
-use crate::handles::{bsdf, material, model_at, model_of, place};
+use crate::handles::{bsdf, material, model_of, place};
 use crate::layout::{EvalResult, LobeResult, RawBsdf, RawMaterial, SampleResult};
 use crate::models::{tag, visit};
 use glam::Vec3;
@@ -48,6 +48,9 @@ pub unsafe extern "C" fn hairis_prepare(
     w: f32,
     h: f32,
 ) {
+    if !to.is_aligned() {
+        return;
+    }
     // SAFETY: the caller's promise.
     let id = unsafe { model_of(from) };
     let head = [id.map_or(0, tag), 0, 0, 0];
@@ -65,7 +68,7 @@ pub unsafe extern "C" fn hairis_prepare(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_restrict(raw: *mut RawBsdf, lobes: u32) {
     // SAFETY: the caller's promise.
-    let Some(id) = (unsafe { model_at(raw) }) else {
+    let Some(id) = (unsafe { model_of(raw) }) else {
         return;
     };
     let (mut kept, mut count) = ([Lobe::R; Lobe::COUNT], 0);
@@ -88,7 +91,7 @@ pub unsafe extern "C" fn hairis_restrict(raw: *mut RawBsdf, lobes: u32) {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_albedo(raw: *const RawBsdf, to: *mut [[f32; 3]; 4]) {
     // SAFETY: the caller's promise.
-    let id = unsafe { model_at(raw) };
+    let id = unsafe { model_of(raw) };
     let albedo = id.map(|id| {
         visit!(id, M, (raw: *const RawBsdf) -> PerLobe<[f32; 3]>, {
             // SAFETY: the tag is the model's.
@@ -108,7 +111,7 @@ pub unsafe extern "C" fn hairis_eval_pdf(
     w: f32,
 ) -> EvalResult {
     // SAFETY: the caller's promise.
-    let id: Option<ModelId> = unsafe { model_at(raw) };
+    let id: Option<ModelId> = unsafe { model_of(raw) };
     let result = id.map(|id| {
         visit!(id, M, (raw: *const RawBsdf, u: f32, v: f32, w: f32) -> EvalResult, {
             // SAFETY: the tag is the model's.
@@ -129,7 +132,7 @@ pub unsafe extern "C" fn hairis_lobes(
     to: *mut [LobeResult; 4],
 ) {
     // SAFETY: the caller's promise.
-    let id = unsafe { model_at(raw) };
+    let id = unsafe { model_of(raw) };
     let lobes = id.map(|id| {
         visit!(id, M, (raw: *const RawBsdf, u: f32, v: f32, w: f32) -> [LobeResult; 4], {
             // SAFETY: the tag is the model's.
@@ -157,7 +160,7 @@ pub unsafe extern "C" fn hairis_sample(
         lobe: -1,
     };
     // SAFETY: the caller's promise.
-    let id = unsafe { model_at(raw) };
+    let id = unsafe { model_of(raw) };
     let result = id.map(|id| {
         visit!(id, M, (raw: *const RawBsdf, xi_lobe: f32, xi_theta: f32, xi_phi: f32) -> SampleResult, {
             // SAFETY: the tag is the model's.

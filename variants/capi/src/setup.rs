@@ -401,6 +401,11 @@ pub unsafe extern "C" fn hairis_material_init(
         // SAFETY: the caller's promise.
         return unsafe { refuse(error, ARGUMENT, &Fault::of("energy"), message) };
     }
+    if !to.is_aligned() {
+        let message = &format_args!("to must lie at a multiple of 16 bytes, got {to:p}");
+        // SAFETY: the caller's promise.
+        return unsafe { refuse(error, ARGUMENT, &Fault::of("to"), message) };
+    }
     let values = &raw const values;
     let made = visit!(id, M, (to: *mut RawMaterial, values: *const Values, energy: u32) -> Result<(), ParamError>, {
         assert_fits::<M>();

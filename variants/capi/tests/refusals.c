@@ -104,15 +104,14 @@ static void setup(void) {
 }
 
 static void columns(void) {
-  static hairis_material materials[3]; /* the last is empty */
+  static hairis_material materials[3]; /* the last is empty, which is no error */
   hairis_params params;
   for (int m = 0; m < 2; ++m) {
     hairis_params_init(&params, m ? "chiang" : "gaussian", NULL, NULL, &error);
     hairis_material_init(&materials[m], &params, HAIRIS_ENERGY_CONSERVING, &error);
   }
-  hairis_bsdf bsdf, empty;
+  hairis_bsdf bsdf;
   hairis_prepare(&bsdf, &materials[0], 0.6f, 0.8f, 0, 0);
-  hairis_prepare(&empty, &materials[2], 0.6f, 0.8f, 0, 0);
   enum { N = 40 };
   static float in[N];
   for (int i = 0; i < N; ++i) in[i] = 0.5f;
@@ -129,18 +128,15 @@ static void columns(void) {
   const size_t huge = (size_t)-1 / 2;
   fill();
 #define REFUSED(call) want((call) == HAIRIS_ARGUMENT, #call)
-  REFUSED(hairis_eval_columns(&empty, N, wi, &evals));
   REFUSED(hairis_eval_columns(&bsdf, N, missing, &evals));
   REFUSED(hairis_eval_columns(&bsdf, N, NULL, &evals));
   REFUSED(hairis_eval_columns(&bsdf, N, wi, NULL));
   REFUSED(hairis_eval_columns(NULL, N, wi, &evals));
   REFUSED(hairis_eval_columns(&bsdf, huge, wi, &evals));
-  REFUSED(hairis_sample_columns(&empty, N, wi, &samples));
   REFUSED(hairis_sample_columns(&bsdf, N, missing, &samples));
   REFUSED(hairis_sample_columns(&bsdf, N, wi, NULL));
   REFUSED(hairis_sample_columns(NULL, N, wi, &samples));
   REFUSED(hairis_sample_columns(&bsdf, huge, wi, &samples));
-  REFUSED(hairis_weigh_columns(&empty, N, &candidates, counts, &weights));
   REFUSED(hairis_weigh_columns(&bsdf, N, &no_light, counts, &weights));
   REFUSED(hairis_weigh_columns(&bsdf, N, &candidates, no_partition, &weights));
   REFUSED(hairis_weigh_columns(&bsdf, N, &candidates, counts, &no_weight));
@@ -152,18 +148,12 @@ static void columns(void) {
   REFUSED(hairis_eval_hits(materials, 3, N, &hits, missing, &evals));
   REFUSED(hairis_eval_hits(materials, 3, N, &hits, wi, &partial));
   REFUSED(hairis_eval_hits(materials, 3, N, &no_wo, wi, &evals));
-  REFUSED(hairis_eval_hits(&materials[2], 1, N, &hits, wi, &evals));
   REFUSED(hairis_eval_hits(materials, 3, huge, &hits, wi, &evals));
   REFUSED(hairis_sample_hits(materials, 3, N, &hits, wi, &partial_samples));
   REFUSED(hairis_sample_hits(materials, 3, N, &no_wo, wi, &samples));
-  index[N - 1] = 2; /* an empty material, at the last hit */
-  REFUSED(hairis_eval_hits(materials, 3, N, &hits, wi, &evals));
-  REFUSED(hairis_sample_hits(materials, 3, N, &hits, wi, &samples));
   index[N - 1] = 3; /* behind the last material */
   REFUSED(hairis_eval_hits(materials, 3, N, &hits, wi, &evals));
   REFUSED(hairis_sample_hits(materials, 3, N, &hits, wi, &samples));
-  hits.index = NULL;
-  REFUSED(hairis_sample_hits(&materials[2], 1, N, &hits, wi, &samples));
   want(is_untouched(), "columns that are refused are written");
 
   /* n = 0 succeeds whatever the pointers. */
@@ -171,21 +161,133 @@ static void columns(void) {
            hairis_weigh_columns(NULL, 0, NULL, counts, NULL) == HAIRIS_OK && hairis_choose(NULL, 0, 3, 0, NULL) == 0 &&
            hairis_eval_hits(NULL, 0, 0, NULL, NULL, NULL) == HAIRIS_OK && hairis_sample_hits(NULL, 0, 0, NULL, NULL, NULL) == HAIRIS_OK,
        "no rows");
+}
 
-  /* Empty handles are black. */
-  hairis_eval_result eval = hairis_eval_pdf(&empty, 0, 1, 0);
-  hairis_sample_result sample = hairis_sample(&empty, 0.5f, 0.5f, 0.5f);
+/* What a handle at this place gives in calls without a status: nothing. */
+static void scatters_nothing(const hairis_material *material, hairis_bsdf *bsdf, const char *what) {
+  hairis_eval_result eval = hairis_eval_pdf(bsdf, 0, 1, 0);
+  hairis_sample_result sample = hairis_sample(bsdf, 0.5f, 0.5f, 0.5f);
   hairis_lobe_result lobes[4];
   float albedo[4][3];
-  hairis_lobes(&empty, 0, 1, 0, lobes);
-  hairis_albedo(&empty, albedo);
-  hairis_restrict(&empty, 1);
+  hairis_lobes(bsdf, 0, 1, 0, lobes);
+  hairis_albedo(bsdf, albedo);
+  hairis_restrict(bsdf, 1);
   want(eval.pdf == 0 && eval.value[0] == 0 && sample.lobe == -1 && sample.pdf == 0 && lobes[0].pdf == 0 && albedo[0][0] == 0 &&
-           hairis_material_max_albedo(&materials[2]) == 0,
-       "empty handles are black");
-  hairis_bsdf zero;
-  memset(&zero, 0, sizeof zero);
-  want(hairis_eval_pdf(&zero, 0, 1, 0).pdf == 0, "a BSDF that is all zero is black");
+           hairis_material_max_albedo(material) == 0,
+       what);
+}
+
+/* An empty handle scatters nothing in any call, as one that is prepared does. */
+static void empty(void) {
+  enum { N = 700 };
+  static hairis_material materials[3]; /* the second is empty */
+  static hairis_bsdf none;
+  static float in[N], h[N], out[11][N], whole[11][N];
+  static uint32_t index[N];
+  hairis_params params;
+  for (int m = 0; m < 3; m += 2) {
+    hairis_params_init(&params, m ? "chiang" : "gaussian", NULL, NULL, &error);
+    hairis_material_init(&materials[m], &params, HAIRIS_ENERGY_CONSERVING, &error);
+  }
+  scatters_nothing(&materials[1], &none, "empty handles scatter nothing");
+  memset(&none, 0xa5, sizeof none);
+  hairis_prepare(&none, &materials[1], 0.6f, 0.8f, 0, 0);
+  scatters_nothing(&materials[1], &none, "a BSDF of an empty material scatters nothing");
+  for (int i = 0; i < N; ++i) in[i] = 0.57735f, h[i] = 0.1f, index[i] = i < 9 ? 1 : (uint32_t)(i * 7 / 5 % 3);
+  const float *wi[3] = {in, in, in};
+  hairis_hits hits = {{in, in, in}, h, index}, all_empty = {{in, in, in}, NULL, NULL};
+  hairis_evals evals = {{out[0], out[1], out[2]}, out[3]};
+  hairis_samples samples = {{out[0], out[1], out[2]}, {out[3], out[4], out[5]}, out[6], {out[7], out[8], out[9]}, out[10]};
+  hairis_samples directions = {{out[0], out[1], out[2]}, {NULL, NULL, NULL}, NULL, {NULL, NULL, NULL}, NULL};
+  hairis_candidates candidates = {{in, in, in}, {in, in, in}, in};
+  hairis_weights weights = {{out[0], out[1], out[2]}, out[3]};
+  hairis_counts counts = {1, 1, HAIRIS_PARTITION_ALL};
+  /* Columns that a call writes, and whether the last is that of lobes. */
+#define NOTHING(call, columns)                                                                       \
+  do {                                                                                               \
+    memset(out, 0xa5, sizeof out);                                                                   \
+    int ok = (call) == HAIRIS_OK;                                                                    \
+    for (int k = 0; k < (columns); ++k)                                                              \
+      for (int i = 0; i < N; ++i) ok = ok && out[k][i] == (k == 10 ? -1.0f : 0.0f);                  \
+    want(ok, "nothing by " #call);                                                                   \
+  } while (0)
+  NOTHING(hairis_eval_columns(&none, N, wi, &evals), 4);
+  NOTHING(hairis_sample_columns(&none, N, wi, &samples), 11);
+  NOTHING(hairis_sample_columns(&none, N, wi, &directions), 3);
+  NOTHING(hairis_weigh_columns(&none, N, &candidates, counts, &weights), 4);
+  NOTHING(hairis_eval_hits(&materials[1], 1, N, &all_empty, wi, &evals), 4);
+  NOTHING(hairis_sample_hits(&materials[1], 1, N, &all_empty, wi, &samples), 11);
+  NOTHING(hairis_sample_hits(&materials[1], 1, N, &all_empty, wi, &directions), 3);
+  /* Among others, whose hits keep their answers. */
+#define AMONG(call, columns)                                                                         \
+  do {                                                                                               \
+    for (int i = 0; i < N; ++i) index[i] = index[i] == 1 ? 3 : index[i];                             \
+    memset(out, 0xa5, sizeof out);                                                                   \
+    want((call) == HAIRIS_ARGUMENT && out[0][9] == out[3][N - 1], "an index behind the materials");  \
+    for (int i = 0; i < N; ++i) index[i] = index[i] == 3 ? 0 : index[i];                             \
+    want((call) == HAIRIS_OK, #call);                                                                \
+    memcpy(whole, out, sizeof out);                                                                  \
+    for (int i = 0; i < N; ++i) index[i] = i < 9 ? 1 : (uint32_t)(i * 7 / 5 % 3);                    \
+    int ok = (call) == HAIRIS_OK;                                                                    \
+    for (int k = 0; k < (columns); ++k)                                                              \
+      for (int i = 0; i < N; ++i)                                                                    \
+        ok = ok && out[k][i] == (index[i] != 1 ? whole[k][i] : k == 10 ? -1.0f : 0.0f);              \
+    want(ok, "nothing among others by " #call);                                                      \
+  } while (0)
+  AMONG(hairis_eval_hits(materials, 3, N, &hits, wi, &evals), 4);
+  AMONG(hairis_sample_hits(materials, 3, N, &hits, wi, &samples), 11);
+  AMONG(hairis_sample_hits(materials, 3, N, &hits, wi, &directions), 3);
+}
+
+/* Handles at addresses that are no multiple of 16, and handles that the library did not write. */
+static void misplaced(void) {
+  enum { N = 20 };
+  static union { hairis_material material; hairis_bsdf bsdf; unsigned char bytes[4096]; } places[2];
+  static float in[N];
+  static hairis_material material;
+  hairis_params params;
+  hairis_bsdf bsdf;
+  hairis_params_init(&params, "gaussian", NULL, NULL, &error);
+  hairis_material_init(&material, &params, HAIRIS_ENERGY_CONSERVING, &error);
+  hairis_prepare(&bsdf, &material, 0.6f, 0.8f, 0, 0);
+  float *out = (float *)(void *)guarded;
+  const float *wi[3] = {in, in, in};
+  hairis_hits hits = {{in, in, in}, NULL, NULL};
+  hairis_evals evals = {{out, out + N, out + 2 * N}, out + 3 * N};
+  hairis_samples samples = {{out, out + N, out + 2 * N}, {NULL, NULL, NULL}, NULL, {NULL, NULL, NULL}, NULL};
+  hairis_candidates candidates = {{in, in, in}, {in, in, in}, in};
+  hairis_weights weights = {{out, out + N, out + 2 * N}, out + 3 * N};
+  hairis_counts counts = {1, 1, HAIRIS_PARTITION_ALL};
+  /* At the last, handles may lie, but these bytes are of no model. */
+  static const size_t offsets[] = {1, 2, 4, 8, 12, 15, 0};
+  for (size_t o = 0; o < sizeof offsets / sizeof *offsets; ++o) {
+    size_t offset = offsets[o];
+    hairis_material *m = (hairis_material *)(void *)(places[0].bytes + offset);
+    hairis_bsdf *b = (hairis_bsdf *)(void *)(places[1].bytes + offset);
+    memset(places, 0xa5, sizeof places);
+    if (offset) {
+      refused(hairis_material_init(m, &params, HAIRIS_ENERGY_RAW, &error), HAIRIS_ARGUMENT, "to", -1,
+              "to must lie at a multiple of 16 bytes, got 0x");
+      hairis_prepare(b, &material, 0.6f, 0.8f, 0, 0);
+      int untouched = 1;
+      for (int p = 0; p < 2; ++p)
+        for (size_t i = 0; i < sizeof places[p].bytes; ++i) untouched = untouched && places[p].bytes[i] == 0xa5;
+      want(untouched, "a handle is written where none may lie");
+      memcpy(places[0].bytes + offset, &material, sizeof material);
+      memcpy(places[1].bytes + offset, &bsdf, sizeof bsdf);
+    }
+    fill();
+    scatters_nothing(m, b, "a misplaced handle scatters nothing");
+    hairis_bsdf of_misplaced;
+    hairis_prepare(&of_misplaced, m, 0.6f, 0.8f, 0, 0);
+    scatters_nothing(m, &of_misplaced, "a BSDF of a misplaced material scatters nothing");
+    REFUSED(hairis_eval_columns(b, N, wi, &evals));
+    REFUSED(hairis_sample_columns(b, N, wi, &samples));
+    REFUSED(hairis_weigh_columns(b, N, &candidates, counts, &weights));
+    REFUSED(hairis_eval_hits(m, 1, N, &hits, wi, &evals));
+    REFUSED(hairis_sample_hits(m, 1, N, &hits, wi, &samples));
+    want(is_untouched(), "columns of a misplaced handle are written");
+  }
 }
 
 /* Names, lengths and ranges of descriptions, and fields that take the place of others. */
@@ -235,6 +337,8 @@ int main(void) {
   memset(&error, 0x5a, sizeof error);
   setup();
   columns();
+  empty();
+  misplaced();
   descriptions();
   printf("%d refusals and descriptions, %d failed\n", checked, failed);
   return failed != 0;

@@ -1,4 +1,4 @@
-//! Tests of `light::load::primaries`.
+//! Tests of `pixels::primaries`.
 
 use glam::{DMat3, DVec3};
 use hairis_instruments::pixels::Primaries;
