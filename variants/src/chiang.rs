@@ -6,6 +6,7 @@ mod gather;
 mod lobes;
 mod params;
 mod sampling;
+mod stand_ins;
 
 pub use far_field::{FarField, OffsetNodes};
 use gather::ChiangMaterial;

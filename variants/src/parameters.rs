@@ -250,6 +250,27 @@ pub trait Parameters: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     /// Returns an error for the first value out of its range; [`Field::refused`] finds the field that the error refers to.
     fn from_values(values: &Values) -> Result<Self, ParamError>;
 
+    /// Turns derivatives by the fields that the parameters keep into derivatives by the fields of `values`, by the chain rule.
+    ///
+    /// If `values` has a field in place of one that the parameters keep, the result has the derivatives by that field. Fields on which
+    /// the replaced one then depends get the rest: the absorption of a colour depends on the roughness. Provided: `by_kept` as it is,
+    /// for parameters without such fields.
+    ///
+    /// ```
+    /// use hairis_variants::{ChiangParams, Parameters, Values};
+    /// let values = ChiangParams::default().values().with("melanin", &[1.0, 0.2]);
+    /// let by_kept = Values::none(ChiangParams::FIELDS).with("beta_n", &[0.5]).with("sigma_a", &[1.0, 0.0, 0.0]);
+    /// let by_fields = ChiangParams::chain(&values, &by_kept);
+    /// assert!(by_fields.has("melanin") && !by_fields.has("sigma_a"));
+    /// assert!((by_fields.numbers("melanin")[0] - 0.419).abs() < 1e-6); // absorption of red by eumelanin
+    /// ```
+    #[inline]
+    #[must_use]
+    fn chain(values: &Values, by_kept: &Values<f64>) -> Values<f64> {
+        let _ = values;
+        *by_kept
+    }
+
     /// Multiplies every colour that scatters by `factor`; the energy-conserving fibre stays as it is.
     ///
     /// # Errors

@@ -159,7 +159,8 @@ fn seed(seed: u64, iteration: u32) -> u64 {
 
 /// Returns the step from `x` to the minimum of the sum of the iterations' quadratic models, and the standard errors of that minimum.
 ///
-/// Variables that the picture hardly depends on stay where they are, with large errors, because their derivatives are damped.
+/// Variables that the picture hardly depends on stay where they are, with large errors, because their derivatives are damped. If it does
+/// not depend on a variable at all, the error of that variable alone is infinite.
 fn minimum(all: &[Iteration], x: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let count = x.len();
     let mut matrix = vec![vec![0.0; count]; count];
@@ -182,6 +183,11 @@ fn minimum(all: &[Iteration], x: &[f64]) -> (Vec<f64>, Vec<f64>) {
             row.iter_mut().zip(other).for_each(|(to, from)| *to += from);
         }
     }
+    let mut errors = vec![0.0; count];
+    // A variable that the picture does not depend on would leave the matrix without an inverse.
+    for k in (0..count).filter(|k| squares[*k] == 0.0) {
+        (matrix[k][k], errors[k]) = (1.0, f64::INFINITY);
+    }
     let largest = squares.iter().fold(0.0, |a: f64, b| a.max(*b));
     let damping = DAMPING / all.len() as f64;
     let mut damped = matrix.clone();
@@ -193,7 +199,6 @@ fn minimum(all: &[Iteration], x: &[f64]) -> (Vec<f64>, Vec<f64>) {
     };
     // Scatter, about the common step, of the steps to the minima of single iterations.
     let end: Vec<f64> = x.iter().zip(&step).map(|(x, step)| x + step).collect();
-    let mut errors = vec![0.0; count];
     for one in all {
         let Some(off) = solve(&mut matrix.clone(), &slope_at(one, &end)) else {
             return (step, vec![f64::INFINITY; count]);

@@ -107,13 +107,34 @@ fn recorded_paths_are_those_of_the_renderer() {
     }
 }
 
+/// Returns a preset of every model, and the preset with each field that may stand in for another.
+fn looks() -> Vec<Choice> {
+    let mut looks = Vec::new();
+    for id in ModelId::defaults_of_names() {
+        let presets: Vec<_> = id.presets().take(3).collect();
+        let preset = choice(id.name(), presets.last().expect("a preset").0);
+        let in_place = id
+            .fields()
+            .iter()
+            .filter(|field| field.instead_of.is_some());
+        looks.extend(in_place.map(|field| {
+            Choice {
+                values: preset
+                    .values
+                    .with(field.name, &[0.6, 0.4, 0.5][..field.kind.width()]),
+                ..preset.clone()
+            }
+        }));
+        looks.push(preset);
+    }
+    looks
+}
+
 /// Checks the gradient of the picture's distance against central differences with the same paths, for every parameter of every model.
 #[test]
 fn gradients_are_those_of_differences() {
-    for id in ModelId::defaults_of_names() {
-        let presets: Vec<_> = id.presets().take(3).collect();
-        let name = presets.last().expect("a preset").0;
-        let hair = choice(id.name(), name);
+    for hair in looks() {
+        let id = hair.id;
         let scene = small(Name::Head, &hair, 24);
         let crop = Crop::whole(scene.camera.size());
         let grey = Picture {
@@ -263,6 +284,52 @@ fn a_picture_gives_its_material_back() {
         assert!(
             end.abs() < 0.03 && error < most,
             "{name}: {end} with an error of {error}"
+        );
+    }
+}
+
+/// Checks that a fit moves the colour that it starts from to that of a picture, and that a number without effect leaves others their errors.
+#[test]
+fn a_picture_gives_a_colour_back() {
+    const TRUTH: [f32; 3] = [0.05, 0.02, 0.01];
+    let base = choice("chiang", "default");
+    let with = |name, numbers: &[f32]| Choice {
+        values: base.values.with(name, numbers),
+        ..base.clone()
+    };
+    let (scene, crop) = close(&with("color", &TRUTH), 300, 48);
+    let picture = transport::film(&scene, &paths(2, 1000), crop, 256).picture();
+    let target = Target::new(&picture, crop, scene.camera.size()).expect("light");
+    let settings = FitSettings {
+        fixed: ["beta_m", "beta_n", "tilt"].map(str::to_owned).into(),
+        iterations: 8,
+        samples: 16,
+        ..FitSettings::default()
+    };
+    let run = |start, settings| fit(&scene, &start, &target, settings, &|_| ()).expect("fitted");
+    let found = run(with("color", &[0.08, 0.014, 0.007]), &settings);
+    assert_eq!(found.names, ["color.r", "color.g", "color.b"]);
+    for (k, truth) in TRUTH.into_iter().map(f64::from).enumerate() {
+        let [number, error] = [&found.numbers, &found.errors].map(|all| all[k] / truth);
+        println!("{}: {number:.3}, {error:.3}", found.names[k]);
+        assert!(
+            (number - 1.0).abs() < 0.2 && error < 0.2,
+            "{number} of the truth, with an error of {error}"
+        );
+    }
+    // The largest amount is cut off, and has no effect from a little below on.
+    let start = with("melanin_amount", &[1.0, 0.3]);
+    let settings = FitSettings {
+        fixed: Vec::new(),
+        iterations: 3,
+        ..settings.clone()
+    };
+    let cut = run(start, &settings);
+    for (name, error) in cut.names.iter().zip(&cut.errors) {
+        assert_eq!(
+            error.is_finite(),
+            name != "melanin_amount.amount",
+            "{name}: {error}"
         );
     }
 }

@@ -4,7 +4,7 @@ use crate::{Differentiable, GradColumns, GradError, Gradients, Weights};
 use hairis::columns::HitColumns;
 use hairis::simd::Level;
 use hairis::{Gaussian, Matched, ParamError, Published};
-use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Parameters, Values};
+use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Values};
 
 macro_rules! any {
     ($($(#[$doc:meta])* $variant:ident: $model:ty;)*) => {
@@ -16,7 +16,7 @@ macro_rules! any {
         }
 
         impl AnyGradients {
-            /// Makes the derivatives at these values of a model's parameters.
+            /// Makes the derivatives at these values of a model's parameters: see [`Gradients::from_values`].
             ///
             /// # Errors
             ///
@@ -32,7 +32,7 @@ macro_rules! any {
             #[inline(never)]
             pub fn new(model: ModelId, values: &Values) -> Result<Self, ParamError> {
                 Ok(match model {
-                    $(ModelId::$variant => Self::$variant(Gradients::new(&Parameters::from_values(values)?)),)*
+                    $(ModelId::$variant => Self::$variant(Gradients::from_values(values)?),)*
                     _ => unreachable!("every model of the list has derivatives"),
                 })
             }

@@ -4,11 +4,15 @@ use crate::columns::Call;
 use crate::generated::{Differentiable, sealed};
 use crate::{GradColumns, GradError, Weights};
 use core::fmt;
+use hairis::ParamError;
 use hairis::columns::HitColumns;
 use hairis::simd::Level;
+use hairis_variants::{Parameters, Values};
 
 /// Derivatives of a material: a handle that is made once per material, and called with slices of hits.
 pub struct Gradients<M: Differentiable> {
+    /// Values that the derivatives by parameters are by.
+    pub(crate) values: Values,
     pub(crate) params: M::Params,
     pub(crate) material: M::Material<f32>,
     level: Level,
@@ -41,10 +45,26 @@ impl<M: Differentiable> Gradients<M> {
     #[must_use]
     pub fn new(params: &M::Params) -> Self {
         Self {
+            values: params.values(),
             params: *params,
             material: M::MODEL.material(params),
             level: Level::detect(),
         }
+    }
+
+    /// Makes the derivatives at the parameters of these values. [`by_parameters`](Self::by_parameters) then returns derivatives by the
+    /// fields that the values have, such as a colour in place of an absorption.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a value is out of its range.
+    #[inline]
+    pub fn from_values(values: &Values) -> Result<Self, ParamError> {
+        let params = M::Params::from_values(values)?;
+        Ok(Self {
+            values: *values,
+            ..Self::new(&params)
+        })
     }
 
     /// Selects an instruction set in place of the one that was detected.

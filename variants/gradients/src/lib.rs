@@ -44,6 +44,12 @@
 //! Directions count as independent coordinates. If their length is within 1e-5 of one, they are not normalised, so that the derivative is
 //! right along the sphere and arbitrary across it. Project it: `d - wi * dot(d, wi)`. The density is that of the model's sampler. A
 //! discarded sample has no derivative, because no sample is drawn here (detached sampling).
+//!
+//! # Fields in place of others
+//!
+//! A colour or melanin may stand in for the absorption of a fibre. If a handle is made by [`Gradients::from_values`] or
+//! `AnyGradients::new`, [`by_parameters`](Gradients::by_parameters) returns the derivatives by the fields that the values have. The
+//! derivative by the roughness then is that at a fixed colour.
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
 

@@ -5,8 +5,9 @@ use crate::generated::Differentiable;
 use hairis_variants::{Kind, Parameters, Values};
 
 impl<M: Differentiable> Gradients<M> {
-    /// Turns derivatives by the numbers of the material into derivatives by parameters: one per number of each field that the parameters
-    /// keep, and 0 for words.
+    /// Turns derivatives by the numbers of the material into derivatives by parameters: one per number of each field that has a value,
+    /// and 0 for words. A field that the handle was made with in place of another one, such as a colour in place of an absorption, has
+    /// derivatives like any other: see [`Parameters::chain`].
     ///
     /// - `d_material`: derivatives by the numbers of the material, as [`GradColumns::d_material`](crate::GradColumns::d_material) sums
     ///   them. Missing entries are 0, and entries beyond [`NUMBERS`](Self::NUMBERS) are ignored.
@@ -19,18 +20,18 @@ impl<M: Differentiable> Gradients<M> {
         reason = "parts of the largest, in [-1, 1]"
     )]
     pub fn by_parameters(&self, d_material: &[f64]) -> Values<f64> {
-        let (values, fields) = (self.params.values(), M::Params::FIELDS);
-        let kept = || (0..fields.len()).filter(|index| values.has_at(*index));
+        let (kept_values, fields) = (self.params.values(), M::Params::FIELDS);
+        let kept = || (0..fields.len()).filter(|index| kept_values.has_at(*index));
         // Sums over many hits may exceed the range of single precision, so they are scaled.
         let largest = d_material.iter().fold(0.0, |a: f64, d| a.max(d.abs()));
         let scale = if largest > 0.0 { largest } else { 1.0 };
         let mut found = M::by_parameters(
-            kept().flat_map(|index| values.numbers_at(index).iter().copied()),
+            kept().flat_map(|index| kept_values.numbers_at(index).iter().copied()),
             d_material.iter().map(|d| (d / scale) as f32),
         );
         let mut derivatives = Values::none(fields);
         for index in kept() {
-            let count = values.numbers_at(index).len();
+            let count = kept_values.numbers_at(index).len();
             let mut all = [0.0; Values::MOST];
             for (to, derivative) in all.iter_mut().take(count).zip(&mut found) {
                 if !matches!(fields[index].kind, Kind::Word(_)) {
@@ -40,6 +41,6 @@ impl<M: Differentiable> Gradients<M> {
             let set = derivatives.set_at(index, &all[..count]);
             debug_assert!(set.is_ok(), "a field of the model");
         }
-        derivatives
+        M::Params::chain(&self.values, &derivatives)
     }
 }

@@ -82,6 +82,8 @@ impl Visitor for Precision {
         for _ in 0..40 {
             let values = random.values(id, false);
             let params = M::Params::from_values(&values).expect("legal values");
+            // Functions of parameters read the fields that the parameters keep.
+            let values = params.values();
             let material = numbers(&M::MODEL.material(&params));
             let gradients = AnyGradients::new(id, &values).expect("legal values");
             for _ in 0..3 {
@@ -97,7 +99,7 @@ impl Visitor for Precision {
                 by[1].extend(loss.errors(0, of_material.iter().copied()));
                 let loss = Loss::new(
                     of_parameters,
-                    double(&parameters(&values)),
+                    double(&parameters(&params)),
                     found.sums.clone(),
                 );
                 let fields = id.fields().iter().enumerate();

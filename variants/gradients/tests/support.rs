@@ -76,6 +76,12 @@ impl Random {
                         }
                         values = values.with(field.name, &numbers);
                     }
+                    // Random materials do not draw fields in place of others.
+                    (kind, None) if field.instead_of.is_some() => {
+                        let mut own = Random(self.0);
+                        let numbers = (0..kind.width()).map(|_| own.range(0.02, 0.98));
+                        values = values.with(field.name, &numbers.collect::<Vec<_>>());
+                    }
                     _ => {}
                 }
             }

@@ -5,7 +5,7 @@ use hairis::columns::HitColumns;
 use hairis::model::Model;
 use hairis::{Gaussian, Matched, ParamError, Published};
 use hairis_gradients::{GradColumns, GradError, Gradients, Weights};
-use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Parameters, Values};
+use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Values};
 use pyo3::PyErr;
 use pyo3::exceptions::PyValueError;
 
@@ -86,8 +86,7 @@ pub(crate) unsafe fn eval_grad(
                     if !is_raw && !<$model as Model>::CONSERVES {
                         return Err(Refusal::Energy);
                     }
-                    let params = Parameters::from_values(values).map_err(Refusal::Param)?;
-                    let gradients = Gradients::<$model>::new(&params);
+                    let gradients = Gradients::<$model>::from_values(values).map_err(Refusal::Param)?;
                     let sums = &mut d_material[..Gradients::<$model>::NUMBERS];
                     out.d_material = Some(sums);
                     gradients

@@ -403,7 +403,8 @@ impl Material {
     ///     "value", shape (3, N): the same bits as in `eval_hits`. "d_wo" and "d_wi", shape (3, N), and "d_h", shape (N,): derivatives
     ///     of the loss. If `out` is given, it is this dict.
     /// d_fields : dict
-    ///     Derivatives of the loss by the fields that have numbers, summed over all hits, in the form of `fields`.
+    ///     Derivatives of the loss by the fields that have numbers, summed over all hits, in the form of `fields`: by "color" and by
+    ///     "beta_n" at that colour, if the material has a colour.
     ///
     /// Raises
     /// ------

@@ -12,7 +12,14 @@ import pytest
 from conftest import bits, directions
 from numpy.typing import NDArray
 
-DEFAULTS = [(name, preset) for name, model in hairis.models().items() for preset in model["presets"][1:3]]
+DEFAULTS: list[tuple[str, str, dict[str, Any]]] = [
+    (name, preset, {}) for name, model in hairis.models().items() for preset in model["presets"][1:3]
+]
+IN_PLACE: list[dict[str, Any]] = [
+    {"color": (0.2, 0.5, 0.9)},
+    {"melanin": (0.6, 0.2)},
+    {"melanin_amount": (0.4, 0.3)},
+]
 
 
 def case(n: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
@@ -22,11 +29,12 @@ def case(n: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.f
     return directions(n, 1), directions(n, 2), d_value, rng.uniform(-0.9, 0.9, n).astype(np.float32)
 
 
-@pytest.mark.parametrize(("model", "preset"), DEFAULTS)
-def test_fields_against_differences(model: str, preset: str) -> None:
+@pytest.mark.parametrize(("model", "preset", "more"), DEFAULTS + [("chiang", "brown", more) for more in IN_PLACE])
+def test_fields_against_differences(model: str, preset: str, more: dict[str, Any]) -> None:
     wo, wi, d_value, h = case(3000)
-    hair = hairis.Material(model, preset, energy="raw")
+    hair = hairis.Material(model, preset, energy="raw", **more)
     columns, d_fields = hair.eval_grad(wo, wi, d_value, h)
+    assert d_fields.keys() == {name for name, value in hair.fields.items() if not isinstance(value, str)}
     assert (bits(columns["value"]) == bits(hair.eval_hits(wo, wi, h)["value"])).all()
     fields: dict[str, Any] = hair.fields
     choice = {} if hair.choice is None else {hairis.models()[model]["choice"]: hair.choice}

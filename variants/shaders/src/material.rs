@@ -9,7 +9,7 @@ use hairis::simd::Lanes;
 use hairis::simd::trace::Target;
 use hairis_variants::{Kind, Parameters, Registered, Values};
 
-/// Returns the fields that have a value, with their places. A field without a value may be an alternative to one of these.
+/// Returns the fields that have a value, with their places.
 fn kept(values: &Values) -> impl Iterator<Item = (usize, &'static hairis_variants::Field)> {
     let places = values.fields().iter().enumerate();
     places.filter(|(place, _)| values.has_at(*place))
@@ -46,10 +46,12 @@ pub(crate) fn params<P: Parameters>() -> Record {
     }
 }
 
-/// Returns the numbers that [`Call::Material`] reads: the numbers of all fields that have a value, in order.
+/// Returns the numbers that [`Call::Material`] reads: the numbers of all fields that the parameters keep, in order. A field in place of one
+/// of these, such as a colour, is not among them.
 #[must_use]
-pub fn parameters(values: &Values) -> Vec<f32> {
-    kept(values)
+pub fn parameters(params: &impl Parameters) -> Vec<f32> {
+    let values = params.values();
+    kept(&values)
         .flat_map(|(place, _)| values.numbers_at(place).to_vec())
         .collect()
 }

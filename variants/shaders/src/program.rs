@@ -45,7 +45,7 @@ impl Program {
             let name = name.replace('-', "_");
             program.add_material(&name, &numbers(&M::MODEL.material(preset)));
             let name = format!("params_{name}");
-            let numbers = parameters(&preset.values());
+            let numbers = parameters(preset);
             program.presets.push(constants(name, &params, &numbers));
         }
         program

@@ -201,7 +201,9 @@ impl<M: Registered> Case<M> {
     /// Returns the arguments of a call as the numbers that its function takes.
     pub(crate) fn arguments(&self, call: Call) -> Vec<f32> {
         let mut all = match call {
-            Call::Material => return parameters(&self.values),
+            Call::Material => {
+                return parameters(&M::Params::from_values(&self.values).expect("legal values"));
+            }
             Call::Eval | Call::Sample | Call::Lobes => numbers(&self.prepared()),
             _ => {
                 let mut all = numbers(&self.material);

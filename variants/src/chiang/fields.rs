@@ -1,7 +1,7 @@
 //! Registry entry of the energy-conserving fibre, and its parameters as fields.
 
 use super::params::{INDEX, ROUGHNESS, SHARE, TILT};
-use super::{Chiang, ChiangDesc, ChiangMaterial, ChiangParams, Shifts};
+use super::{Chiang, ChiangDesc, ChiangMaterial, ChiangParams, Shifts, stand_ins};
 use crate::{Field, Kind, Parameters, Registered, Values};
 use hairis::ParamError;
 use hairis::model::Precision;
@@ -100,6 +100,25 @@ impl Parameters for ChiangParams {
             desc
         };
         Self::new(&desc)
+    }
+
+    #[inline]
+    fn chain(values: &Values, by_kept: &Values<f64>) -> Values<f64> {
+        let (mut by, by_absorption) = (*by_kept, by_kept.get_at(4));
+        if values.has("melanin") {
+            by = by.with("melanin", &stand_ins::by_melanin(by_absorption));
+        } else if values.has("melanin_amount") {
+            let amount = values.get("melanin_amount");
+            let by_amount = stand_ins::by_melanin_amount(amount, by_absorption);
+            by = by.with("melanin_amount", &by_amount);
+        } else if values.has("color") {
+            let (color, beta_n) = (values.get("color"), values.number_at(1));
+            let (by_color, by_beta_n) = stand_ins::by_color(color, beta_n, by_absorption);
+            by = by
+                .with("beta_n", &[by_kept.number_at(1) + by_beta_n])
+                .with("color", &by_color);
+        }
+        by
     }
 
     /// Checks `factor` and returns the fibre unchanged, because it returns no more light than it receives.

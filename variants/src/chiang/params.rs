@@ -137,7 +137,7 @@ impl ChiangDesc {
         SHARE.check("color", &color)?;
         let by = 1.0 / color_denominator(self.beta_n);
         let absorption = |c: f32| {
-            let log = libm::logf(c.max(1e-3)) * by;
+            let log = libm::logf(c.max(LEAST_COLOR)) * by;
             log * log
         };
         Ok(Self {
@@ -232,10 +232,15 @@ impl Default for ChiangDesc {
     }
 }
 
-/// Returns the denominator in the absorption of a colour: Chiang et al. 2016, section 4.
+/// Coefficients of the denominator in the absorption of a colour, by powers of the azimuthal roughness: Chiang et al. 2016, section 4.
+pub(super) const COLOR: [f32; 6] = [5.969, -0.215, 2.532, -10.73, 5.574, 0.245];
+/// Least channel of a colour that the absorption distinguishes.
+pub(super) const LEAST_COLOR: f32 = 1e-3;
+
+/// Returns the denominator in the absorption of a colour.
 #[inline]
 fn color_denominator(n: f32) -> f32 {
-    5.969 + n * (-0.215 + n * (2.532 + n * (-10.73 + n * (5.574 + n * 0.245))))
+    COLOR.iter().rev().fold(0.0, |sum, c| c + n * sum)
 }
 
 /// Parameters of the energy-conserving fibre that have passed all checks.

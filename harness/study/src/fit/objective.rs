@@ -11,7 +11,7 @@ use hairis::ParamError;
 use hairis::columns::HitColumns;
 use hairis_gradients::{Differentiable, GradColumns, Gradients, Visitor, Weights, visit};
 use hairis_materials::material::single;
-use hairis_variants::{ModelId, Parameters, Values};
+use hairis_variants::{ModelId, Values};
 
 /// Number of iterations after which the optimiser ends.
 const ITERATIONS: u64 = 600;
@@ -188,7 +188,7 @@ impl Visitor for ByNumbers<'_> {
     fn visit<M: Differentiable>(self) -> Self::Output {
         // Only the first entry of each name, because others have the same S.
         if const { ModelId::of::<M>().is_default() } {
-            let gradients = Gradients::<M>::new(&M::Params::from_values(self.values)?);
+            let gradients = Gradients::<M>::from_values(self.values)?;
             let Rows { wo, h, wi } = self.rows;
             let hits = HitColumns {
                 wo: wo.each_ref().map(|column| &column[..]),

@@ -16,7 +16,14 @@ fn derivatives_are_differences_of_the_distance() {
         model: ModelId::Gaussian,
         values: from,
     };
-    for to in [ModelId::Cauchy, ModelId::Chiang] {
+    let chiang = ModelId::Chiang.measured();
+    for (to, start) in [
+        (ModelId::Cauchy, ModelId::Cauchy.measured()),
+        (ModelId::Chiang, chiang),
+        (ModelId::Chiang, chiang.with("color", &[0.6, 0.4, 0.2])),
+        (ModelId::Chiang, chiang.with("melanin", &[0.5, 0.2])),
+        (ModelId::Chiang, chiang.with("melanin_amount", &[0.5, 0.4])),
+    ] {
         for norm in [Norm::L1, Norm::L2, Norm::Blurred] {
             let config = FitConfig {
                 norm,
@@ -25,7 +32,7 @@ fn derivatives_are_differences_of_the_distance() {
                 ..FitConfig::default()
             };
             let points = Points::new(&look, to, &config, 0).expect("legal values");
-            let variables = Variables::new(&to.measured(), &[]);
+            let variables = Variables::new(&start, &[]);
             let x: Vec<f64> = variables.start().iter().map(|x| x + 0.05).collect();
             let x = variables.clamped(x);
             let problem = Distance::new(to, &points, &variables, norm);
