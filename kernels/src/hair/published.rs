@@ -128,9 +128,10 @@ fn energies<W: Precision>(
         c(4.0 * PI) * W::of(beta[2]) * W::of(gamma_g) * i_trt * of_glint,
     ];
     let largest = r.max(tt).max(trt).max(glint);
+    let largest = W::select(zero.lt(largest), largest, c(1.0));
     let share = |energy: W, intensity: W| {
-        let share = (energy / largest).max(c(LEAST_SHARE));
-        W::select(zero.lt(intensity), share, zero).rounded()
+        let share = energy / largest;
+        W::select(zero.lt(intensity), share.max(c(LEAST_SHARE)), share).rounded()
     };
     [
         share(r, i_r * of_r),

@@ -134,23 +134,26 @@ pub(crate) fn intensities<W: Precision>(d: &HairDesc<W::Lane>) -> ([[W; 3]; 3], 
     let least = c(f32::MIN_POSITIVE);
     let largest = colors.map(|[r, g, b]| r.max(g).max(b));
     let brightest = largest[0].max(largest[1]).max(largest[2]).max(least);
-    let [r, tt, trt] = largest.map(|x| <W::Lane as Lanes>::quotient(x, brightest));
+    // A lobe without intensity has the scale of the brightest, so that it has derivatives by its intensity.
+    let scale = largest.map(|x| <W::Lane as Lanes>::select(c(0.0).lt(x), x, brightest));
+    let [r, tt, trt] = scale.map(|x| <W::Lane as Lanes>::quotient(x, brightest));
     let glint = trt * d.i_g;
-    let by = one.max(glint);
-    let factor = |x: W::Lane, is_there: W::Lane| {
-        let share = <W::Lane as Lanes>::quotient(x, by).max(c(LEAST_SHARE));
-        W::of(<W::Lane as Lanes>::keep(c(0.0).lt(is_there), share))
+    let by = one.max(<W::Lane as Lanes>::keep(c(0.0).lt(largest[2]), glint));
+    let share = |x: W::Lane, is_there: W::Lane| {
+        let share = <W::Lane as Lanes>::quotient(x, by);
+        let some = share.max(c(LEAST_SHARE));
+        W::of(<W::Lane as Lanes>::select(c(0.0).lt(is_there), some, share))
     };
     (
         core::array::from_fn(|lobe| {
-            let most = largest[lobe].max(least);
+            let most = scale[lobe].max(least);
             colors[lobe].map(|x| W::of(<W::Lane as Lanes>::quotient(x, most)))
         }),
         [
-            factor(r, largest[0]),
-            factor(tt, largest[1]),
-            factor(trt, largest[2]),
-            factor(glint, largest[2].min(d.i_g)),
+            share(r, scale[0]),
+            share(tt, scale[1]),
+            share(trt, scale[2]),
+            share(glint, d.i_g),
         ],
     )
 }

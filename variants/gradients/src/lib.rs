@@ -32,18 +32,31 @@
 //!
 //! | in the model | derivative |
 //! |---|---|
-//! | `min`, `max`, clamps | that of the operand that is returned, and 0 for the other; on a tie that of the second operand, as in the value. Beyond a clamp it is 0: by an offset `h` outside `[-1, 1]`, for example |
+//! | `min`, `max`, clamps | that of the operand that is returned, and 0 for the other. Beyond a clamp it is 0: by an offset `h` outside `[-1, 1]`, for example |
 //! | masks and their choices | that of the chosen side; the choice itself is constant, so that a jump between the sides has no derivative |
 //! | rounding to an integer, exponents | 0: steps |
-//! | magnitude, sign | the sign of the argument; at 0 that of the bit of its sign, a subgradient |
-//! | square root at 0 | the root counts as at least 1e-18 |
+//! | magnitude, sign | the sign of the argument; 1 at 0 |
 //! | seams of the azimuth | that of the side the value is computed on |
-//! | directions along the fibre, non-finite inputs | 0, as the value |
+//! | non-finite inputs, `wi` along the fibre | 0, as the value |
+//! | `wo` along the fibre | 0 by `wo`, because the azimuth jumps there |
 //! | any other derivative that is infinite or undefined | 0 |
 //!
 //! Directions count as independent coordinates. If their length is within 1e-5 of one, they are not normalised, so that the derivative is
 //! right along the sphere and arbitrary across it. Project it: `d - wi * dot(d, wi)`. The density is that of the model's sampler. A
 //! discarded sample has no derivative, because no sample is drawn here (detached sampling).
+//!
+//! # Ends of ranges
+//!
+//! At the end of a parameter's range, or of the offset's, a derivative is the limit from within, or 0 where that limit is infinite:
+//!
+//! - **Offsets.** By an offset of -1 or 1 the derivative is 0, because the angle of the hit is infinitely steep at a silhouette.
+//! - **Clamps.** If a clamp's operands are equal, up to rounding, the number has the derivative and the bound has none.
+//! - **Zero intensities.** S is linear in them. The density of a lobe without intensity has the derivative of a lobe that is about to appear.
+//! - **Several numbers.** A derivative by a number of the material that is infinite counts as 0 in
+//!   [`by_parameters`](Gradients::by_parameters), and those by other numbers count as they are.
+//!
+//! The test `derivatives_at_the_ends_are_limits_from_within` compares them end by end with one-sided differences of the formulas, and prints
+//! the table.
 //!
 //! # Fields in place of others
 //!

@@ -2,6 +2,7 @@
 
 mod differences;
 mod edges;
+mod ends;
 mod lanes;
 mod precision;
 mod refusals;

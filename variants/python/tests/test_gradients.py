@@ -67,6 +67,23 @@ def test_out_and_threads_of_columns() -> None:
     assert same == d_fields and (bits(whole["d_wi"]) == bits(out["d_wi"])).all()
 
 
+def test_ends() -> None:
+    """The offset is infinitely steep at a silhouette, and has no derivative there; a clear fibre has that of its absorption."""
+    wo, wi, d_value, h = case(1000)
+    h = np.where(h < 0, np.float32(-1), np.float32(1))
+    hair = hairis.Material("chiang", energy="raw", sigma_a=(0.0, 0.5, 0.0))
+    columns, d_fields = hair.eval_grad(wo, wi, d_value, h)
+    assert (columns["d_h"] == 0).all() and np.abs(columns["d_wi"]).max() > 0
+
+    def loss(red: float) -> float:
+        other = hairis.Material("chiang", energy="raw", sigma_a=(red, 0.5, 0.0))
+        return float((d_value * other.eval_hits(wo, wi, h)["value"].astype(np.float64)).sum())
+
+    step = 1e-3
+    want = (4 * loss(step) - loss(2 * step) - 3 * loss(0.0)) / (2 * step)
+    assert d_fields["sigma_a"][0] == pytest.approx(want, rel=0.01)
+
+
 def test_jax(capsys: pytest.CaptureFixture[str]) -> None:
     """The gradients of the example agree with differences along a direction, and the example recovers the widths that it hid."""
     jax = pytest.importorskip("jax")

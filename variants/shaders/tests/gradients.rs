@@ -186,3 +186,45 @@ fn check_finite<M: Registered>() {
 fn gradients_are_finite_at_the_edges() {
     every_model!(check_finite);
 }
+
+/// Checks that a sample has no derivative by a uniform number at an end where the derivative from within, in double precision, is infinite.
+fn check_uniform<M: Registered>() {
+    const STEP: f64 = 1e-9;
+    let program = Program::of::<M>(Target::Exact);
+    let function = program.function(Call::SampleHit);
+    let gradient = function.gradient();
+    let weights = vec![1.0_f32; function.output().len()];
+    let first = function.inputs().len() - 3;
+    let (mut random, mut infinite) = (Random(50), 0);
+    for mut case in Case::<M>::smooth(160, 51) {
+        for (k, end) in (0..3).flat_map(|k| [(k, 0.0), (k, 1.0 - 0.5 * f32::EPSILON)]) {
+            case.xi = [(); 3].map(|()| random.range(0.1, 0.9));
+            case.xi[k] = end;
+            let inputs = case.arguments(Call::SampleHit);
+            let exact: Vec<f64> = inputs.iter().copied().map(f64::from).collect();
+            let inwards = if end == 0.0 { STEP } else { -STEP };
+            let at = |steps: f64| -> f64 {
+                let mut exact = exact.clone();
+                exact[first + k] += inwards * steps;
+                function.run_double(&exact).0.iter().sum()
+            };
+            let slopes = [1.0, 1.0 / 16.0, 1.0 / 256.0].map(|steps| (at(steps) - at(0.0)) / steps);
+            let [a, b, c] = slopes.map(f64::abs);
+            let is_rounding = c < 1e-9 * at(0.0).abs();
+            if b > 2.0 * a && c > 2.0 * b && !is_rounding {
+                let all = gradient.run(&[&inputs[..], &weights].concat(), Rounding::Once);
+                let got = all[weights.len() + first + k];
+                let name = program.name();
+                assert!(got == 0.0, "{name}: {got} by xi[{k}]: {case}");
+                infinite += 1;
+            }
+        }
+    }
+    println!("{}: {infinite} are infinite", program.name());
+    assert!(infinite > 20, "{}", program.name());
+}
+
+#[test]
+fn samples_have_no_infinite_derivatives_by_uniform_numbers() {
+    every_model!(check_uniform);
+}
