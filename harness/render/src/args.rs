@@ -26,7 +26,6 @@ hairis-render renders hair, and measures on pictures what models and samplers ar
   merge     one picture from the parts that several machines have rendered
 
 Try:
-  hairis-render render head --hair blond --spp 16
   hairis-render render head --model chiang --integrator path --spp 16
   hairis-render figures --quick
 
