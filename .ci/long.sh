@@ -4,7 +4,7 @@
 # samplers that differ by constants; then, in CI's size, the tests of the kernels compiled for x86-64-v3, the energy of
 # 40,000 materials, and the tests that are ignored for their time, run once; then size and answers of the C library with the feature
 # `every-sampler`, the tests of models, derivatives, harness and renderer with it, those of the wheel and Mitsuba's chi-square with
-# it, and the hosts without an operating system. The wheel needs the virtual environment that .ci/hosts.sh makes.
+# it, models printed for Python in every framework, and the hosts without an operating system. The wheel needs the virtual environment that .ci/hosts.sh makes.
 #
 #   .ci/long.sh          one round
 #   .ci/long.sh ROUNDS   so many
@@ -64,5 +64,14 @@ wheel() {
     grep -q '88 of 88 pass' "$work/chi2.log"
 }
 wheel || { echo "FAIL the wheel with every sampler"; failed=1; }
+# Models printed for Python in every framework, on 10,000 hits of 20 materials. PyTorch of PyPI brings CUDA, and takes 5 GB.
+frameworks() {
+  local python llvm program
+  python=$(realpath -m "${CARGO_TARGET_DIR:-target}")/hosts/venv/bin/python
+  llvm=$(ls /usr/lib/*/libLLVM.so.[0-9]* 2> /dev/null | sort -V | tail -1)
+  program=$(.ci/release.sh) && "$python" -m pip install -q torch &&
+    DRJIT_LIBLLVM_PATH=$llvm "$python" .ci/frameworks.py "$program/hairis" numpy drjit torch jax
+}
+frameworks || { echo "FAIL models in frameworks of arrays"; failed=1; }
 .ci/cortex_m.sh || failed=1
 exit $failed

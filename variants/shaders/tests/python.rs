@@ -1,4 +1,5 @@
-//! Tests that the module of Python has the bits of one lane with `NumPy`.
+//! Tests that the module of Python has the bits of one lane with `NumPy`. Accuracy and derivatives in the frameworks are tested by
+//! `.ci/frameworks.py`.
 
 use crate::gradients::Weighted;
 use crate::operations;
