@@ -64,12 +64,13 @@ wheel() {
     grep -q '88 of 88 pass' "$work/chi2.log"
 }
 wheel || { echo "FAIL the wheel with every sampler"; failed=1; }
-# Models printed for Python in every framework, on 10,000 hits of 20 materials. PyTorch of PyPI brings CUDA, and takes 5 GB.
+# Models printed for Python in every framework, on 10,000 hits of 20 materials, for the wheel of .ci/hosts.sh. PyTorch of PyPI brings CUDA, and takes 5 GB.
 frameworks() {
-  local python llvm program
-  python=$(realpath -m "${CARGO_TARGET_DIR:-target}")/hosts/venv/bin/python
+  local work python llvm program
+  work=$(realpath -m "${CARGO_TARGET_DIR:-target}")/hosts
+  python=$work/venv/bin/python
   llvm=$(ls /usr/lib/*/libLLVM.so.[0-9]* 2> /dev/null | sort -V | tail -1)
-  program=$(.ci/release.sh) && "$python" -m pip install -q torch &&
+  program=$(.ci/release.sh) && "$python" -m pip install -q torch && "$python" -m pip install -q --force-reinstall --no-deps "$work"/wheels/*.whl &&
     DRJIT_LIBLLVM_PATH=$llvm "$python" .ci/frameworks.py "$program/hairis" numpy drjit torch jax
 }
 frameworks || { echo "FAIL models in frameworks of arrays"; failed=1; }
