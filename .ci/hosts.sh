@@ -125,17 +125,16 @@ for name in 'a$b' 'a(b' 'a)' $'a\nb' $'a\n' $'a\t' 'a '; do
 done
 rm -r "$work/odd"
 export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
+eval "flags=($(pkg-config --cflags --libs hairis))"
 for example in furnace.c furnace.cpp pbrt_hair.cpp resample.cpp; do
   case $example in *.c) compiler='gcc -std=c11' ;; *) compiler='g++ -std=c++17' ;; esac
-  eval "flags=($(pkg-config --cflags --libs hairis))"
   $compiler -O2 -Wall -Wextra -pedantic -Werror "$capi/examples/$example" -o "$work/example" "${flags[@]}" -lm
   (cd "$work" && LD_LIBRARY_PATH=$prefix/lib ./example > example.log) || { cat "$work/example.log"; echo "FAIL $example"; exit 1; }
   tail -2 "$work/example.log"
 done
 
 for exceptions in -fexceptions '-fno-exceptions -fno-rtti'; do
-  g++ -std=c++17 $exceptions -O2 -Wall -Wextra -pedantic -Werror "$capi/tests/reporting.cpp" -o "$work/reporting" \
-    $(pkg-config --cflags --libs hairis)
+  g++ -std=c++17 $exceptions -O2 -Wall -Wextra -pedantic -Werror "$capi/tests/reporting.cpp" -o "$work/reporting" "${flags[@]}"
   LD_LIBRARY_PATH=$prefix/lib "$work/reporting"
 done
 
