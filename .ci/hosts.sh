@@ -70,6 +70,22 @@ HAIRIS_MAY_LACK=1 "$work/bits" "$work/answers.bin" | tee "$work/bits.log"
 grep -q '; 30 are not in the library' "$work/bits.log" || { echo "FAIL the library has other models"; exit 1; }
 "$work/refusals"
 
+part 'floating-point exceptions'
+build_c "$capi/tests/exceptions.c" "$work/exceptions" "${dynamic[@]}"
+build_c "$capi/tests/exceptions.c" "$work/exceptions-static" "$prefix/lib/libhairis.a" -lpthread -ldl -lm
+for library in '' -static; do
+  printf 'libhairis%s: ' "${library:-.so}"
+  "$work/exceptions$library"
+  "$work/exceptions$library" trap
+done
+# Programs that trap: a furnace by columns, and a loop of samples and evaluations as renderers have it.
+for example in furnace.c pbrt_hair.cpp; do
+  case $example in *.c) compiler='gcc -std=c11' ;; *) compiler='g++ -std=c++17' ;; esac
+  $compiler -O2 -D_GNU_SOURCE "${strict[@]}" -include "$capi/tests/traps.h" "$capi/examples/$example" -o "$work/trapping" "${dynamic[@]}"
+  "$work/trapping" > "$work/trapping.log" || { cat "$work/trapping.log"; echo "FAIL $example with traps"; exit 1; }
+done
+echo 'furnace.c and pbrt_hair.cpp end well with traps'
+
 # What watches memory must report a column that is one number short, in the call that fills it.
 reported() { # reported COMMAND...
   "$@" > "$work/short.log" 2>&1 && { echo "FAIL a column that is too short is not reported"; exit 1; }

@@ -100,10 +100,13 @@ fn constants<W: Precision>(
     KajiyaKayMaterial {
         kd,
         ks,
-        mean: [kd, ks].map(|[r, g, b]| r / lane(3.0) + g / lane(3.0) + b / lane(3.0)),
+        mean: [kd, ks].map(|rgb| {
+            let [r, g, b] = rgb.map(|x| <W::Lane as Lanes>::quotient(x, lane(3.0)));
+            r + g + b
+        }),
         reciprocal: <W::Lane as Lanes>::keep(reciprocal, lane(1.0)),
         exponent: exponent * -LN_2,
-        inv_exponent: lane(-4.0 * LN_2) / exponent,
+        inv_exponent: <W::Lane as Lanes>::quotient(lane(-4.0 * LN_2), exponent),
         peak: (c(0.5) / (pi * cosine_integral(p + m))).rounded(),
         density: (one / (pi * cosine_integral(p))).rounded(),
         grazing: (one / ((p + one) * narrowing)).rounded(),

@@ -415,5 +415,5 @@ pub fn normal_tail_inverse<L: Lanes>(q: L) -> L {
             -380.996_926_689_455_3,
         ],
     );
-    (one - (q + q)) * L::select(w.lt(c(7.0)), center, root * tail)
+    ((one - (q + q)) * L::select(w.lt(c(7.0)), center, root * tail)).spread()
 }

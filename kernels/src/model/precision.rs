@@ -138,7 +138,16 @@ macro_rules! operators {
         }
     )* };
 }
-operators! { Add add; Sub sub; Mul mul; Div div; }
+operators! { Add add; Sub sub; Mul mul; }
+
+impl<L: Lanes> Div for Single<L> {
+    type Output = Self;
+    #[inline]
+    #[track_caller]
+    fn div(self, other: Self) -> Self {
+        Self(L::quotient(self.0, other.0))
+    }
+}
 
 impl<L: Lanes<Stored = L> + Broadcast<L>> Precision for Single<L> {
     type Lane = L;

@@ -21,7 +21,7 @@ use core::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
 use core::arch::x86_64::*;
 use core::mem::transmute;
-use core::ops::{Add, Div, Mul, Neg, Sub};
+use core::ops::{Add, Mul, Neg, Sub};
 use wide::f32x8;
 
 /// Eight lanes. No code outside of `simd` can name the type. Code inside runs with it below
@@ -50,7 +50,7 @@ macro_rules! binary {
         }
     )* };
 }
-binary! { Add add _mm256_add_ps; Sub sub _mm256_sub_ps; Mul mul _mm256_mul_ps; Div div _mm256_div_ps; }
+binary! { Add add _mm256_add_ps; Sub sub _mm256_sub_ps; Mul mul _mm256_mul_ps; }
 by_splat! { Avx2, [] }
 
 impl Neg for Avx2 {
@@ -106,6 +106,10 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
         difference_fused(a, b, c, d)
+    }
+    #[inline(always)]
+    fn quotient(a: Self, b: Self) -> Self {
+        Self(avx2!(_mm256_div_ps(a.0, b.0)))
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

@@ -20,7 +20,7 @@ use core::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
 use core::arch::x86_64::*;
 use core::mem::transmute;
-use core::ops::{Add, Div, Mul, Neg, Sub};
+use core::ops::{Add, Mul, Neg, Sub};
 
 /// Sixteen lanes. As for [`Avx2`](super::avx2::Avx2), code with this type comes only from below
 /// `dispatch`'s functions of AVX-512F, VL, DQ and BW, which a `Level` enters only where the CPU has
@@ -47,7 +47,7 @@ macro_rules! binary {
         }
     )* };
 }
-binary! { Add add _mm512_add_ps; Sub sub _mm512_sub_ps; Mul mul _mm512_mul_ps; Div div _mm512_div_ps; }
+binary! { Add add _mm512_add_ps; Sub sub _mm512_sub_ps; Mul mul _mm512_mul_ps; }
 by_splat! { Avx512, [] }
 
 impl Neg for Avx512 {
@@ -101,6 +101,10 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
         difference_fused(a, b, c, d)
+    }
+    #[inline(always)]
+    fn quotient(a: Self, b: Self) -> Self {
+        Self(avx512!(_mm512_div_ps(a.0, b.0)))
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

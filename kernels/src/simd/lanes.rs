@@ -12,7 +12,7 @@ use super::choice::Choice;
 use super::schedule::Schedule;
 use super::table::{NUMBERS, Storage, Table};
 use core::fmt::Debug;
-use core::ops::{Add, Div, Mul, Neg, Sub};
+use core::ops::{Add, Mul, Neg, Sub};
 use wide::{f32x8, i32x8};
 
 pub(crate) mod sealed {
@@ -35,7 +35,6 @@ pub trait Lanes:
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
-    + Div<Output = Self>
     + Neg<Output = Self>
     + Add<f32, Output = Self>
     + Sub<f32, Output = Self>
@@ -78,13 +77,10 @@ pub trait Lanes:
     /// Backends that fuse recover the rounding error of a product; others split the factors. The difference of two plain products
     /// would lose every digit that cancels.
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
-    /// Computes `a / b`. From two `/` on one lane a compiler may make one division of four lanes, whose unused lanes raise
-    /// exceptions.
-    #[inline(always)]
+    /// Computes `a / b`. There is no operator `/`: on one lane a compiler may make one division of four lanes from two, whose unused
+    /// lanes raise exceptions. A quotient is [`alone`](Schedule::alone).
     #[must_use]
-    fn quotient(a: Self, b: Self) -> Self {
-        (a / b).alone()
-    }
+    fn quotient(a: Self, b: Self) -> Self;
     /// Computes the square root, correctly rounded.
     #[must_use]
     fn sqrt(self) -> Self;

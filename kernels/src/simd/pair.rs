@@ -9,7 +9,7 @@ use super::choice::Choice;
 use super::lanes::{Broadcast, Lanes, Packet, Scalar, by_splat, sealed::Sealed};
 use super::schedule::Schedule;
 use super::table::{Entries, Shared};
-use core::ops::{Add, Div, Mul, Neg, Sub};
+use core::ops::{Add, Mul, Neg, Sub};
 
 /// Two packets, or two equal steps of one packet, as lanes: each instruction for one is followed by the same instruction for the
 /// other.
@@ -41,7 +41,7 @@ macro_rules! binary {
         }
     )* };
 }
-binary! { Add add; Sub sub; Mul mul; Div div; }
+binary! { Add add; Sub sub; Mul mul; }
 by_splat! { Pair<L>, [L: Lanes] }
 
 impl<L: Lanes> Neg for Pair<L> {
@@ -90,6 +90,10 @@ impl<L: Lanes> Lanes for Pair<L> {
             L::difference_of_products(a.0, b.0, c.0, d.0),
             L::difference_of_products(a.1, b.1, c.1, d.1),
         )
+    }
+    #[inline(always)]
+    fn quotient(a: Self, b: Self) -> Self {
+        Self(L::quotient(a.0, b.0), L::quotient(a.1, b.1))
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -166,6 +170,10 @@ impl<L: Lanes> Schedule for Pair<L> {
     #[inline(always)]
     fn alone(self) -> Self {
         Self(self.0.alone(), self.1.alone())
+    }
+    #[inline(always)]
+    fn spread(self) -> Self {
+        Self(self.0.spread(), self.1.spread())
     }
     #[inline(always)]
     fn together([a, b, c]: [Self; 3]) -> [Self; 3] {

@@ -15,7 +15,7 @@ use super::lanes::{
 };
 use super::schedule::Schedule;
 use super::table::{Entries, Rows, Shared};
-use core::ops::{Add, Div, Mul, Neg, Sub};
+use core::ops::{Add, Mul, Neg, Sub};
 use wide::{f32x4, f32x8, u32x8};
 
 /// True if `mul_add` of `wide` rounds once in this build.
@@ -198,7 +198,7 @@ macro_rules! binary {
         }
     )* };
 }
-binary! { Add add; Sub sub; Mul mul; Div div; }
+binary! { Add add; Sub sub; Mul mul; }
 by_splat! { Portable<FUSE>, [const FUSE: bool] }
 
 impl<const FUSE: bool> Neg for Portable<FUSE> {
@@ -274,6 +274,10 @@ macro_rules! eight_lanes {
                 } else {
                     difference_split([a, b, c, d], [split(a), split(b), split(c), split(d)])
                 }
+            }
+            #[inline(always)]
+            fn quotient(a: Self, b: Self) -> Self {
+                Self::wrap(a.unwrap() / b.unwrap())
             }
             #[inline(always)]
             fn sqrt(self) -> Self {

@@ -93,6 +93,10 @@ impl Lanes for f32 {
         difference_split([a, b, c, d], [split(a), split(b), split(c), split(d)])
     }
     #[inline(always)]
+    fn quotient(a: Self, b: Self) -> Self {
+        (a / b).alone()
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         sqrt(self)
     }
@@ -185,6 +189,18 @@ impl Schedule for f32 {
         // SAFETY: there is no code, and the program is compiled for CPUs that have the registers.
         unsafe {
             core::arch::asm!("/* {0} */", inout(xmm_reg) self, options(pure, nomem, nostack, preserves_flags));
+        }
+        self
+    }
+    #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(miri)))]
+    #[inline(always)]
+    fn spread(mut self) -> Self {
+        // SAFETY: the program is compiled for CPUs that have the instruction, which reads and writes a register.
+        unsafe {
+            #[cfg(not(target_feature = "avx"))]
+            core::arch::asm!("shufps {0}, {0}, 0", inout(xmm_reg) self, options(pure, nomem, nostack, preserves_flags));
+            #[cfg(target_feature = "avx")]
+            core::arch::asm!("vshufps {0}, {0}, {0}, 0", inout(xmm_reg) self, options(pure, nomem, nostack, preserves_flags));
         }
         self
     }

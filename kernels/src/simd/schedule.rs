@@ -10,6 +10,14 @@ pub trait Schedule: Sized {
         self
     }
 
+    /// Barrier like [`alone`](Self::alone), after a number whose register may hold results of a polynomial far out of its domain in the
+    /// unused lanes: these hold copies of the number afterwards, and raise an exception only where the number does. One instruction.
+    #[inline(always)]
+    #[must_use]
+    fn spread(self) -> Self {
+        self
+    }
+
     /// Barrier after two numbers, with AVX2: neither is used before both are computed.
     ///
     /// Compilers tend to emit two dependency chains one after the other, because that order takes fewer registers. A CPU that looks

@@ -13,7 +13,7 @@ use super::schedule::Schedule;
 use super::table::Entries;
 use core::fmt;
 use core::marker::PhantomData;
-use core::ops::{Add, Div, Mul, Neg, Sub};
+use core::ops::{Add, Mul, Neg, Sub};
 use core::panic::Location;
 
 /// Operation on numbers (32-bit floats) and masks (truth values), which reads up to three results `a`, `b`, `c`. Comparisons are
@@ -261,7 +261,7 @@ macro_rules! binary {
         }
     )* };
 }
-binary! { Add add; Sub sub; Mul mul; Div div; }
+binary! { Add add; Sub sub; Mul mul; }
 
 /// Arithmetic with one number for all lanes, like that of other lanes except for the line that is recorded.
 macro_rules! by_number {
@@ -328,6 +328,11 @@ impl<R: Recorder> Lanes for Traced<R> {
         } else {
             self * a - b
         }
+    }
+    #[inline]
+    #[track_caller]
+    fn quotient(a: Self, b: Self) -> Self {
+        Self::op(Op::Div, [a.name, b.name, 0])
     }
     #[inline]
     #[track_caller]

@@ -229,7 +229,7 @@ impl Fiber {
                 sum = sum - 1e-3;
             }
             if prepared.fault == DIVIDES_BY_ZERO {
-                sum = sum.min(c(1.0) / L::keep(c(9.0).lt(wi.x), wi.x));
+                sum = sum.min(L::quotient(c(1.0), L::keep(c(9.0).lt(wi.x), wi.x)));
             }
             if prepared.fault == NEGATIVE_ROUNDED_DOWN {
                 let tiny = wi.x * wi.x * 1e-10;
@@ -251,7 +251,7 @@ impl Fiber {
         if prepared.fault == NAN_AT_THE_POLE {
             // The quotient is 0 / 0 on the axis.
             let cos_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
-            pdf = pdf * cos_sq / (wi.y * wi.y + wi.z * wi.z);
+            pdf = L::quotient(pdf * cos_sq, wi.y * wi.y + wi.z * wi.z);
         }
         Eval { value, pdf }
     }
@@ -349,7 +349,7 @@ impl Model for Fiber {
         let constants = Point {
             kd,
             ks: times(prepared.ks, s),
-            selection: [p_d / sum, p_s / sum],
+            selection: [C::quotient(p_d, sum), C::quotient(p_s, sum)],
             ..prepared.constants
         };
         Faulty {

@@ -390,7 +390,7 @@ fn operation(function: &Function, place: u32, inputs: &Inputs<'_>, slots: &mut S
         Op::Add => "$a + $b",
         Op::Sub => "$a - $b",
         Op::Mul => "$a * $b",
-        Op::Div => "$a / $b",
+        Op::Div => "L::quotient($a, $b)",
         Op::Neg => "-$a",
         Op::MulAdd => "$a.mul_add($b, $c)",
         Op::Sqrt => "$a.sqrt()",

@@ -58,6 +58,16 @@ pub(crate) fn compile(
 
 /// Runs a compiled driver on these inputs, and returns its results.
 pub(crate) fn run(program: &Path, function: &str, inputs: &[f32]) -> Vec<f32> {
+    let output = started(program, function, inputs);
+    assert!(output.status.success(), "{function}: {}", output.status);
+    let (chunks, _) = output.stdout.as_chunks::<4>();
+    chunks
+        .iter()
+        .map(|bytes| f32::from_le_bytes(*bytes))
+        .collect()
+}
+
+fn started(program: &Path, function: &str, inputs: &[f32]) -> Output {
     let mut child = Command::new(program)
         .arg(function)
         .stdin(Stdio::piped())
@@ -66,16 +76,10 @@ pub(crate) fn run(program: &Path, function: &str, inputs: &[f32]) -> Vec<f32> {
         .expect("the program starts");
     let bytes: Vec<u8> = inputs.iter().flat_map(|x| x.to_le_bytes()).collect();
     let mut stdin = child.stdin.take().expect("standard input is a pipe");
-    // The program reads all of its input before it writes.
-    stdin.write_all(&bytes).expect("the program reads");
+    // The program reads all of its input before it writes; whether it ended before shows in its status.
+    let _ = stdin.write_all(&bytes);
     drop(stdin);
-    let output = child.wait_with_output().expect("the program ends");
-    assert!(output.status.success(), "{function}: {}", output.status);
-    let (chunks, _) = output.stdout.as_chunks::<4>();
-    chunks
-        .iter()
-        .map(|bytes| f32::from_le_bytes(*bytes))
-        .collect()
+    child.wait_with_output().expect("the program ends")
 }
 
 /// Compiles the driver of a program by gcc, without contraction, in a new folder. Returns `None` if gcc is not installed.
@@ -184,6 +188,76 @@ fn clang_keeps_products_and_sums_apart() {
 fn cpp_has_the_bits_of_one_lane() {
     for compiler in ["g++", "clang++"] {
         bits(compiler, &["-std=c++17", "-O1", "-ffp-contract=off"], 4096);
+    }
+}
+
+/// Host that ends with SIGFPE at an invalid operation, a division by zero or an overflow; with `CONTROL`, at once.
+const TRAPS: &str = "
+#include <fenv.h>
+__attribute__((constructor)) static void trap(void) {
+    feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
+#ifdef CONTROL
+    volatile float zero = 0, quotient = zero / zero;
+    (void)quotient;
+#endif
+}
+";
+
+/// Returns the calls of a model that end a host with traps, compiled with these flags.
+fn trapped<M: Registered>(compiler: &str, flags: &[&str]) -> Vec<String> {
+    let program = Program::of::<M>(Target::Exact);
+    let dir = TempDir::new().expect("a folder for the program");
+    let flags = [&["-std=gnu99", "-D_GNU_SOURCE"], flags].concat();
+    let binary = compile(dir.path(), &(source(&program) + TRAPS), compiler, &flags);
+    let binary = binary.unwrap_or_else(|error| panic!("{}: {error}", program.name()));
+    let cases = Case::<M>::everyday(8192, 7);
+    let ends = |call: &Call| {
+        let inputs: Vec<f32> = cases
+            .iter()
+            .flat_map(|case| case.arguments(*call))
+            .collect();
+        let name = program.function(*call).name();
+        !started(&binary, name, &inputs).status.success()
+    };
+    let found = Call::ALL.iter().filter(|call| ends(call));
+    found
+        .map(|call| format!("{} {}", program.name(), program.function(*call).name()))
+        .collect()
+}
+
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+fn c_raises_no_exception_on_everyday_input() {
+    #[derive(Clone, Copy)]
+    struct Quiet<'a>(&'a str, &'a [&'a str]);
+    impl Visitor for Quiet<'_> {
+        type Output = ();
+        fn visit<M: Registered>(self) {
+            let found = trapped::<M>(self.0, self.1);
+            assert!(found.is_empty(), "{} {:?}: {found:?}", self.0, self.1);
+        }
+    }
+    // Clang computes unused lanes of packed numbers, unless it is told that exceptions matter.
+    let clang = "-ffp-exception-behavior=maytrap";
+    for (compiler, flags) in [("gcc", &[][..]), ("clang", &[clang][..])] {
+        if !exists(compiler) {
+            continue;
+        }
+        let control = trapped::<KajiyaKay>(compiler, &["-O1", "-DCONTROL"]);
+        assert_eq!(
+            control.len(),
+            Call::ALL.len(),
+            "the control raises exceptions"
+        );
+        for level in ["-O2", "-O3"] {
+            let flags = [&[level], flags].concat();
+            visit_every_model(Quiet(compiler, &flags));
+            println!(
+                "generated C by {compiler} {}: no exceptions",
+                flags.join(" ")
+            );
+        }
     }
 }
 

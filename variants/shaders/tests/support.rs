@@ -193,6 +193,21 @@ impl<M: Registered> Case<M> {
         cases
     }
 
+    /// Draws cases of the presets as most hits are: unit directions, and random numbers above 0.
+    pub(crate) fn everyday(count: usize, seed: u64) -> Vec<Self> {
+        let mut random = Random(seed);
+        let mut cases = Self::many(count, seed);
+        for (case, (_, params)) in cases.iter_mut().zip(M::Params::PRESETS.iter().cycle()) {
+            case.values = params.values();
+            case.material = M::MODEL.material(params);
+            case.wo = random.sphere();
+            case.h = random.range(-1.0, 1.0);
+            case.wi = random.sphere();
+            case.xi = [(); 3].map(|()| random.unit().max(1e-7));
+        }
+        cases
+    }
+
     /// Computes the shading point in one lane.
     pub(crate) fn prepared(&self) -> M::Prepared<f32> {
         M::prepare::<f32, f32>(&self.material, Hit::new(vector(self.wo), self.h))

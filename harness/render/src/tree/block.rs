@@ -121,7 +121,7 @@ impl Leaf for Block {
         // Place on the segment that is nearest to the ray.
         let edge_sq = edge[0].mul_add(edge[0], edge[1].mul_add(edge[1], edge[2] * edge[2]));
         let start_edge = start[0].mul_add(edge[0], start[1].mul_add(edge[1], start[2] * edge[2]));
-        let on_line = start_edge / edge_sq.max(L::splat(1e-30));
+        let on_line = L::quotient(start_edge, edge_sq.max(L::splat(1e-30)));
         let s = on_line.max(L::splat(0.0)).min(L::splat(1.0));
         let distance_sq_at = |s: L| {
             let axis = [
@@ -141,14 +141,14 @@ impl Leaf for Block {
             let inside = radius
                 .mul_sub(radius, distance_sq_at(on_line))
                 .max(L::splat(0.0));
-            let half = (inside * along_sq / edge_sq.max(L::splat(1e-30))).sqrt();
+            let half = L::quotient(inside * along_sq, edge_sq.max(L::splat(1e-30))).sqrt();
             let enters = on_line.mul_add(edge_along, from_along) - half;
             met = L::and(met, L::splat(0.0).lt(enters));
             // The segment is entered there, or through the plane at one of its ends.
-            let foot = on_line - half * edge_along / along_sq;
+            let foot = on_line - L::quotient(half * edge_along, along_sq);
             let end = foot.max(L::splat(0.0)).min(L::splat(1.0));
             let is_beyond = L::splat(0.0).lt((end - foot).abs());
-            let plane = enters + (end - foot) * along_sq / edge_along;
+            let plane = enters + L::quotient((end - foot) * along_sq, edge_along);
             // A ray that has passed the plane meets the round end, at the place nearest to it.
             let at_end = L::select(plane.lt(enters), t, plane.min(t));
             t = L::select(is_beyond, at_end, enters);

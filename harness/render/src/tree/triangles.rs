@@ -133,7 +133,7 @@ impl Leaf for Triangles {
             [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
         };
         let normal = cross(edge(&self.corners[1]), edge(&self.corners[2]));
-        let t = dot(normal, a) / dot(normal, ray.direction);
+        let t = L::quotient(dot(normal, a), dot(normal, ray.direction));
         let within = L::and(L::splat(0.0).lt(t), t.lt(L::splat(limit)));
         // No two sides have opposite signs.
         let inside = L::splat(-f32::MIN_POSITIVE).lt(least.max(L::splat(0.0) - most));

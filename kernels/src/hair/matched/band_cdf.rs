@@ -150,7 +150,7 @@ pub(super) fn integrate_bands<
         let band = &const { bands(N) }[j];
         // Heights ascend inwards, although W may have its mode before the middle.
         let cos_sq: P = band.cos_sq_theta_d(theta_o);
-        height = height.max(P::splat(band.cos_sq_theta_i()) / cos_sq);
+        height = height.max(P::quotient(P::splat(band.cos_sq_theta_i()), cos_sq));
         minus_slope = minus_slope.max(cos_sq * (-1.0 / band.cos_sq_theta_i()));
         let to = quarter_o + P::outwards(band.half_inner);
         for_each!(k < K, {
@@ -166,7 +166,9 @@ pub(super) fn integrate_bands<
         (cdf.offset[j], cdf.offset[N - 1 - j]) = (shared4(offsets[0]), shared4(offsets[1]));
     });
     let cos_sq: P = const { bands(N) }[N / 2].cos_sq_theta_d(theta_o);
-    let height = height.max(height.swapped()).max(P::splat(1.0) / cos_sq);
+    let height = height
+        .max(height.swapped())
+        .max(P::quotient(P::splat(1.0), cos_sq));
     let slope = minus_slope.max(minus_slope.swapped()).abs().min(cos_sq);
     let minus_slope = slope.times_sign(P::splat(-1.0));
     (cdf.height[N / 2], cdf.slope[N / 2]) = (height.apart()[0].store(), slope.apart()[0].store());

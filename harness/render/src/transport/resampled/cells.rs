@@ -38,7 +38,8 @@ impl Kernel for Unfold<'_> {
         let (x, y, z): (L, L, L) = (self.0.x.lanes(), self.0.y.lanes(), self.0.z.lanes());
         let c = L::splat;
         let one = c(1.0);
-        let by = one / (x.abs() + y.abs() + z.abs()).max(c(f32::MIN_POSITIVE));
+        let length = (x.abs() + y.abs() + z.abs()).max(c(f32::MIN_POSITIVE));
+        let by = L::quotient(one, length);
         let (a, b) = (x * by, z * by);
         let below = y.lt(c(0.0));
         let folded = [(one - b.abs()).times_sign(a), (one - a.abs()).times_sign(b)];
