@@ -73,7 +73,7 @@ use wide::f32x8;
 ///     #[inline(always)]
 ///     fn lobes<L: Lanes, C: Broadcast<L>>(prepared: &Albedo<C>, wi: &Direction<L>) -> PerLobe<LobeEval<L>> {
 ///         let pdf = L::splat(0.25 * FRAC_1_PI);
-///         let lobe = LobeEval { value: pdf / wi.cos_theta, color: lanes3(&prepared.rgb), pdf };
+///         let lobe = LobeEval { value: L::quotient(pdf, wi.cos_theta), color: lanes3(&prepared.rgb), pdf };
 ///         PerLobe::padded([lobe], LobeEval::none())
 ///     }
 ///
