@@ -35,8 +35,11 @@ cp -r variants/capi/examples/*.c variants/capi/examples/*.cpp variants/capi/exam
 pack "$c"
 
 python=$target/hosts/venv/bin
-[ -x "$python/maturin" ] || { python3 -m venv "$target/hosts/venv" && "$python/pip" install -q 'maturin>=1.9,<2'; }
-(cd variants/python && "$python/maturin" build -q --locked --target-dir "$target/hosts/wheel" --out "$dir")
+[ -x "$python/pip" ] || python3 -m venv "$target/hosts/venv"
+"$python/pip" install -q 'maturin[zig]>=1.9,<2'
+# For distributions from 2014 on: Zig links against the C library of that year. maturin calls the Python that it finds first for it.
+(cd variants/python && PATH=$python:$PATH maturin build -q --locked --zig --compatibility manylinux2014 \
+  --target-dir "$target/hosts/manylinux" --out "$dir")
 
 manual=hairis-manual-$version
 quietly cargo run -q --release --locked -p hairis-manual -- "$stage/$manual"
