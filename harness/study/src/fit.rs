@@ -31,10 +31,10 @@ pub use rules::{RULES, first_start, rules};
 
 use crate::study::Grid;
 use hairis::ParamError;
+use hairis_instruments::progress::Progress;
 use hairis_instruments::sequence::Independent;
 use hairis_variants::{ModelId, Values};
 use objective::minimise;
-use rayon::prelude::*;
 use serde::Serialize;
 use variables::Variables;
 
@@ -185,7 +185,12 @@ fn starts(given: &[Values], config: &FitConfig) -> Vec<Values> {
 /// # Errors
 ///
 /// Returns an error if a value of `from` is out of its range.
-pub fn fit(from: &Look, to: ModelId, config: &FitConfig) -> Result<Fit, ParamError> {
+pub fn fit(
+    from: &Look,
+    to: ModelId,
+    config: &FitConfig,
+    report: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Fit, ParamError> {
     let to = ModelId::find(to.name(), None).unwrap_or(to);
     let points = Points::new(from, to, config, 0)?;
     let others = Points::new(from, to, &config.finer(), 1)?;
@@ -200,17 +205,19 @@ pub fn fit(from: &Look, to: ModelId, config: &FitConfig) -> Result<Fit, ParamErr
         let presets = to.presets().map(|(_, values)| values);
         given.extend(presets.filter(|values| *values != rules[0]));
     }
-    let ends = starts(&given, config).into_par_iter().map(|start| {
-        let (values, iterations) = minimise(to, &start, &points, config)?;
+    let starts = starts(&given, config);
+    let progress = Progress::new(starts.len(), report);
+    let ends = progress.map(&starts, |start| {
+        let (values, iterations) = minimise(to, start, &points, config)?;
         Ok(End {
-            start,
+            start: *start,
             values,
-            distance_of_start: distance(&start)?,
+            distance_of_start: distance(start)?,
             distance: distance(&values)?,
             iterations,
         })
     });
-    let ends = ends.collect::<Result<Vec<End>, ParamError>>()?;
+    let ends = ends.into_iter().collect::<Result<Vec<End>, ParamError>>()?;
     let distances_of_rules = rules.iter().map(distance);
     let distances_of_rules = distances_of_rules.collect::<Result<Vec<f64>, ParamError>>()?;
     // The first rule is the first start.

@@ -41,7 +41,7 @@ fn a_model_fitted_to_itself_returns_its_values_from_every_start() {
             directions: 256,
             ..FitConfig::default()
         };
-        let found = fit(&look, ModelId::Gaussian, &config).expect("legal values");
+        let found = fit(&look, ModelId::Gaussian, &config, &|_, _| ()).expect("legal values");
         // The first start is the answer.
         for end in &found.ends[1..] {
             let (start, error) = (
@@ -79,7 +79,7 @@ fn no_refit_is_further_away_than_its_start() {
             model: from,
             values,
         };
-        let found = fit(&look, to, &config).expect("legal values");
+        let found = fit(&look, to, &config, &|_, _| ()).expect("legal values");
         println!(
             "{from:?} to {to:?}: {} from {}",
             found.distance, found.distance_of_start
@@ -101,7 +101,8 @@ fn fixed_fields_stay_and_equal_flags_give_equal_values() {
         starts: 3,
         ..FitConfig::default()
     };
-    let [one, two] = [(); 2].map(|()| fit(&look, ModelId::Cauchy, &config).expect("legal values"));
+    let [one, two] =
+        [(); 2].map(|()| fit(&look, ModelId::Cauchy, &config, &|_, _| ()).expect("legal values"));
     assert_eq!(one.found.values, two.found.values);
     for name in ["alpha", "phi_g"] {
         assert_eq!(
@@ -129,7 +130,7 @@ fn weights_count_by_their_ratios() {
                 directions: 128,
                 ..FitConfig::default()
             };
-            let found = fit(&look, to, &config).expect("legal values");
+            let found = fit(&look, to, &config, &|_, _| ()).expect("legal values");
             let rows = residuals(&look, &found.found, &found.points).expect("legal values");
             let numbers = |row: &Residual| [row.l1, row.l2, row.albedo_from, row.albedo_to];
             let mut numbers = rows.iter().flat_map(numbers);

@@ -50,7 +50,10 @@ pub fn run(flags: &Fit) -> Result<(), Error> {
             from.name
         )));
     }
-    let found = fit::fit(&look, to, &config)?;
+    let bar = share_bar("starts {wide_bar} {percent:>3}% {elapsed} (left {eta})");
+    let show = |done: usize, of: usize| show_share(&bar, done as f64 / of as f64);
+    let found = fit::fit(&look, to, &config, &show)?;
+    bar.finish_and_clear();
     let start = Look {
         model: found.found.model,
         values: fit::first_start(&look, to),

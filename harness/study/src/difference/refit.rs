@@ -31,7 +31,9 @@ pub(super) fn all(
                 model: ModelId::Gaussian,
                 values: cell.params()?.values(),
             };
-            let values = fit(&look, ModelId::Cauchy, &config)?.found.values;
+            let values = fit(&look, ModelId::Cauchy, &config, &|_, _| ())?
+                .found
+                .values;
             Ok::<_, ParamError>(numbers(&values))
         };
         let key = format!("refit of the hair of cell {}", cell.index);

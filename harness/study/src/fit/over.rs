@@ -65,7 +65,7 @@ pub fn refits(
     progress: &Progress<'_>,
 ) -> Result<Vec<Refit>, ParamError> {
     let refit = |(name, look): &(String, Look)| {
-        let found = fit(look, to, config)?;
+        let found = fit(look, to, config, &|_, _| ())?;
         let start = Look {
             model: found.found.model,
             values: first_start(look, to),
