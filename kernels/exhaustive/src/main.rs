@@ -1,0 +1,158 @@
+//! Elementary functions of [`hairis::model::math`] at every float of their domains, on one lane and on every level of this CPU, against
+//! double precision.
+//!
+//! - `hairis-exhaustive RECORD`: sweeps over all floats, and writes a row for each result to RECORD; functions that the file has are
+//!   left out, so that a run that was stopped goes on. Takes minutes.
+//! - `hairis-exhaustive check RECORD [STRIDE]`: sweeps over one float in STRIDE (1009 if it is left out) from an offset that differs
+//!   from run to run and is printed, and fails if an error is larger than that of the record, if levels differ in a bit that must
+//!   have the same bits, or if an exception is raised.
+
+mod functions;
+mod sweep;
+
+use core::error::Error;
+use functions::{Function, each_function};
+use std::env::args;
+use std::fs;
+use std::io::Write;
+use std::time::{SystemTime, UNIX_EPOCH};
+use sweep::{Choice, Found, Worst, sweep};
+
+const HEAD: &str = "function,result,first,last,arguments,unit,one lane,one lane at,fused,fused at";
+
+/// Rows of a function, one for each result.
+fn rows<F: Function>(found: &Found) -> Vec<String> {
+    let rows = F::RESULTS.iter().enumerate().map(|(i, result)| {
+        let [first, last] = F::DOMAIN;
+        let [one, fused] = found.worst.map(|worst| worst[i]);
+        format!(
+            "\"{}\",{result},{first:e},{last:e},{},{},{:.4e},{:e},{:.4e},{:e}",
+            F::NAME,
+            found.arguments,
+            F::UNIT.name(),
+            one.error,
+            one.at,
+            fused.error,
+            fused.at
+        )
+    });
+    rows.collect()
+}
+
+/// Sentences about what must not be, whatever the errors are.
+fn faults<F: Function>(found: &Found) -> Vec<String> {
+    let mut faults = Vec::new();
+    if found.differing > 0 {
+        faults.push(format!(
+            "{}: {} results differ in a bit between levels",
+            F::NAME,
+            found.differing
+        ));
+    }
+    for (flags, lanes) in found.flags.into_iter().zip(["one lane", "lanes that fuse"]) {
+        if flags != 0 {
+            faults.push(format!(
+                "{} on {lanes} raises exceptions, flags {flags:#x}",
+                F::NAME
+            ));
+        }
+    }
+    faults
+}
+
+fn record(path: &str) -> Result<Vec<String>, Box<dyn Error>> {
+    let mut text = fs::read_to_string(path).unwrap_or_default();
+    if text.is_empty() {
+        text = format!("{HEAD}\n");
+        fs::write(path, &text)?;
+    }
+    let mut all = Vec::new();
+    macro_rules! visit {
+        ($Function:ident) => {
+            type F = functions::$Function;
+            if !text.contains(&format!("\n\"{}\",", F::NAME)) {
+                let found = sweep::<F>(Choice {
+                    stride: 1,
+                    offset: 0,
+                });
+                let rows = rows::<F>(&found).join("\n");
+                println!("{rows}");
+                // At once: a run that is stopped keeps its rows.
+                writeln!(fs::OpenOptions::new().append(true).open(path)?, "{rows}")?;
+                all.extend(faults::<F>(&found));
+            }
+        };
+    }
+    macro_rules! visits {
+        ($name:ident) => {{
+            visit!($name);
+        }};
+    }
+    each_function!(visits);
+    Ok(all)
+}
+
+/// Largest errors of a row of the record, on one lane and on lanes that fuse.
+fn recorded(text: &str, function: &str, result: &str) -> Result<[f64; 2], Box<dyn Error>> {
+    let start = format!("\"{function}\",{result},");
+    let row = text.lines().find_map(|line| line.strip_prefix(&start));
+    let row = row.ok_or_else(|| format!("the record must have a row {start}"))?;
+    let fields: Vec<&str> = row.split(',').collect();
+    let [_, _, _, _, one, _, fused, _] = fields[..] else {
+        return Err(format!("a row must have {} fields: {row}", HEAD.split(',').count()).into());
+    };
+    Ok([one.parse()?, fused.parse()?])
+}
+
+fn check(path: &str, choice: Choice) -> Result<Vec<String>, Box<dyn Error>> {
+    let text =
+        fs::read_to_string(path).map_err(|error| format!("{path} must be a record: {error}"))?;
+    let mut all = Vec::new();
+    let (mut arguments, mut closest) = (0, 0.0_f64);
+    macro_rules! visits {
+        ($Function:ident) => {{
+            type F = functions::$Function;
+            let found = sweep::<F>(choice);
+            arguments += found.arguments;
+            all.extend(faults::<F>(&found));
+            for (i, result) in F::RESULTS.iter().enumerate() {
+                let most = recorded(&text, F::NAME, result)?;
+                for ((worst, most), lanes) in found.worst.iter().zip(most).zip(["one lane", "lanes that fuse"]) {
+                    let Worst { error, at } = worst[i];
+                    closest = closest.max(error / most);
+                    // The record has five digits.
+                    if error > most * 1.0001 {
+                        all.push(format!("{} {result} on {lanes}: {error:.4e} at {at:e}, {most:.4e} in the record", F::NAME));
+                    }
+                }
+            }
+        }};
+    }
+    each_function!(visits);
+    println!("{arguments} arguments: largest error {closest:.3} of the record");
+    Ok(all)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let words: Vec<String> = args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let faults = match words[..] {
+        ["check", path, ref rest @ ..] if rest.len() < 2 => {
+            let stride = rest.first().map_or(Ok(1009), |word| word.parse())?;
+            let now = SystemTime::now().duration_since(UNIX_EPOCH)?;
+            let offset = u64::from(now.subsec_nanos()) % stride;
+            println!("one float in {stride}, from the {offset}th on");
+            check(path, Choice { stride, offset })?
+        }
+        [path] if path != "check" => record(path)?,
+        _ => {
+            return Err(
+                "usage: hairis-exhaustive RECORD | hairis-exhaustive check RECORD [STRIDE]".into(),
+            );
+        }
+    };
+    if faults.is_empty() {
+        return Ok(());
+    }
+    Err(faults.join("\n").into())
+}
