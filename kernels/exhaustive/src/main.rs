@@ -12,13 +12,20 @@ mod sweep;
 
 use core::error::Error;
 use functions::{Function, each_function};
+use hairis::simd::Level;
 use std::env::args;
 use std::fs;
 use std::io::Write;
 use std::time::{SystemTime, UNIX_EPOCH};
 use sweep::{Choice, Found, Worst, sweep};
 
-const HEAD: &str = "function,result,first,last,arguments,unit,one lane,one lane at,fused,fused at";
+const HEAD: &str = "\
+# Largest errors of elementary functions over all floats of their domains, by hairis-exhaustive.
+# CPU: any
+function,result,first,last,arguments,unit,one lane,one lane at,fused,fused at";
+
+/// Number of fields of a row.
+const ROW: usize = 10;
 
 /// Rows of a function, one for each result.
 fn rows<F: Function>(found: &Found) -> Vec<String> {
@@ -61,6 +68,9 @@ fn faults<F: Function>(found: &Found) -> Vec<String> {
 }
 
 fn record(path: &str) -> Result<Vec<String>, Box<dyn Error>> {
+    if !Level::available().any(Level::fuses) {
+        return Err("a record needs a CPU with a level that fuses".into());
+    }
     let mut text = fs::read_to_string(path).unwrap_or_default();
     if text.is_empty() {
         text = format!("{HEAD}\n");
@@ -99,7 +109,7 @@ fn recorded(text: &str, function: &str, result: &str) -> Result<[f64; 2], Box<dy
     let row = row.ok_or_else(|| format!("the record must have a row {start}"))?;
     let fields: Vec<&str> = row.split(',').collect();
     let [_, _, _, _, one, _, fused, _] = fields[..] else {
-        return Err(format!("a row must have {} fields: {row}", HEAD.split(',').count()).into());
+        return Err(format!("a row must have {} fields: {row}", ROW).into());
     };
     Ok([one.parse()?, fused.parse()?])
 }
@@ -109,6 +119,7 @@ fn check(path: &str, choice: Choice) -> Result<Vec<String>, Box<dyn Error>> {
         fs::read_to_string(path).map_err(|error| format!("{path} must be a record: {error}"))?;
     let mut all = Vec::new();
     let (mut arguments, mut closest) = (0, 0.0_f64);
+    let fuses = Level::available().any(Level::fuses);
     macro_rules! visits {
         ($Function:ident) => {{
             type F = functions::$Function;
@@ -117,7 +128,9 @@ fn check(path: &str, choice: Choice) -> Result<Vec<String>, Box<dyn Error>> {
             all.extend(faults::<F>(&found));
             for (i, result) in F::RESULTS.iter().enumerate() {
                 let most = recorded(&text, F::NAME, result)?;
-                for ((worst, most), lanes) in found.worst.iter().zip(most).zip(["one lane", "lanes that fuse"]) {
+                let arithmetics = if fuses { 2 } else { 1 };
+                let all_lanes = ["one lane", "lanes that fuse"];
+                for ((worst, most), lanes) in found.worst.iter().zip(most).zip(all_lanes).take(arithmetics) {
                     let Worst { error, at } = worst[i];
                     closest = closest.max(error / most);
                     // The record has five digits.
