@@ -172,9 +172,9 @@ pub struct Place {
     /// The scene
     #[arg(value_enum)]
     pub scene: Name,
-    /// Strands of the procedural hair
-    #[arg(long, value_name = "N", default_value_t = 30_000)]
-    pub strands: usize,
+    /// Strands of the procedural hair, on each head [default: that of the scene]
+    #[arg(long, value_name = "N")]
+    pub strands: Option<usize>,
     /// Hair from a file in place of the scene's: .hair, .tfx, .data, .bin, .ply or Mitsuba's text
     #[arg(long, value_name = "FILE")]
     pub import: Option<PathBuf>,

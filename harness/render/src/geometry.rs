@@ -7,6 +7,7 @@ mod spline;
 mod strands;
 
 pub use bounds::Bounds;
+pub(crate) use groom::random::{Random, Stream};
 pub use groom::{Groom, HEAD, Kind};
 pub use mesh::Mesh;
 pub use spline::{Basis, Flattening, Spline};

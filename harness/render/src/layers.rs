@@ -141,7 +141,11 @@ fn first(scene: &Scene, [x, y]: [u32; 2]) -> [f32; 7] {
                 .tangent(hit.segment, hit.s)
                 .normalize_or_zero();
             let theta_o = (-ray.direction.dot(tangent)).clamp(-1.0, 1.0).asin();
-            (scene.hair.albedo(theta_o, hit.h), tangent, hit.t)
+            (
+                scene.hair_of(hit.strand).1.albedo(theta_o, hit.h),
+                tangent,
+                hit.t,
+            )
         }
         Met::Surface(point, _, albedo) => {
             (albedo.to_array(), Vec3::ZERO, point.distance(ray.origin))

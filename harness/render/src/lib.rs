@@ -31,6 +31,7 @@ pub mod memory;
 pub mod numbers;
 pub mod part;
 pub mod picture;
+pub mod portrait;
 pub mod protocol;
 pub mod saver;
 pub mod scalp;

@@ -39,6 +39,8 @@ pub struct Scene {
     pub tree: Tree,
     /// Material of the hair.
     pub hair: Hair,
+    /// Materials of further heads of hair, each from a strand on, in ascending order of strands.
+    pub others: Vec<(u32, Hair)>,
     /// Head on which the hair grows.
     pub head: Option<Head>,
     /// Walls and lights.
@@ -56,6 +58,17 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Returns the material of a strand: its place among those of the scene, and the material itself.
+    #[inline]
+    #[must_use]
+    pub fn hair_of(&self, strand: u32) -> (usize, &Hair) {
+        let place = self.others.partition_point(|(first, _)| *first <= strand);
+        let hair = place
+            .checked_sub(1)
+            .map_or(&self.hair, |other| &self.others[other].1);
+        (place, hair)
+    }
+
     /// Finds the first object along a ray, among hair, head and rectangles.
     #[inline]
     #[must_use]

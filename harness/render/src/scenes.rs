@@ -4,6 +4,7 @@ use crate::camera::Camera;
 use crate::geometry::{Bounds, Flattening, Groom, HEAD, Kind, Strands};
 use crate::lights::{Rectangle, RectangleSampling, Sky};
 use crate::material::Hair;
+use crate::portrait::{self, Portrait};
 use crate::scene::{Ellipsoid, Head, Scene};
 use crate::transport::Integrator;
 use crate::tree::Tree;
@@ -35,6 +36,14 @@ pub enum Name {
     FurnaceOne,
     /// A patch that absorbs nothing in a white sphere
     FurnaceIso,
+    /// Three heads in a studio: wavy blond, curly brown and straight black hair
+    Portraits,
+    /// The head with wavy blond hair alone
+    Wavy,
+    /// The head with curly brown hair alone
+    Curly,
+    /// The head with straight black hair alone
+    Straight,
 }
 
 /// Default settings of a scene, which flags may replace.
@@ -46,6 +55,8 @@ pub struct Defaults {
     pub preset: &'static str,
     /// Samples per pixel.
     pub samples: u32,
+    /// Strands of procedural hair, of each head if there are several.
+    pub strands: usize,
     /// Whether hair passes light on to hair.
     pub multiple: bool,
 }
@@ -65,6 +76,10 @@ impl Name {
             Self::Lamps => "lamps",
             Self::FurnaceOne => "furnace-one",
             Self::FurnaceIso => "furnace-iso",
+            Self::Portraits => "portraits",
+            Self::Wavy => "wavy",
+            Self::Curly => "curly",
+            Self::Straight => "straight",
         }
     }
 
@@ -75,12 +90,14 @@ impl Name {
             integrator: Integrator::Gather,
             preset,
             samples: 64,
+            strands: 30_000,
             multiple: true,
         };
         let paths = Defaults {
             integrator: Integrator::Path,
             preset: "blond",
             samples: 64,
+            strands: 30_000,
             multiple: true,
         };
         match self {
@@ -92,30 +109,50 @@ impl Name {
                 ..paths
             },
             Self::Box | Self::Head | Self::Lamps | Self::FurnaceOne | Self::FurnaceIso => paths,
+            Self::Portraits | Self::Wavy | Self::Curly | Self::Straight => Defaults {
+                samples: 256,
+                strands: 80_000,
+                ..paths
+            },
         }
     }
 
-    /// Returns the kind of procedural hair that grows in the scene.
+    /// Returns the heads of the scene if they are portraits, or else none.
     #[must_use]
-    pub fn kind(self) -> Kind {
+    pub fn portraits(self) -> &'static [Portrait] {
         match self {
-            Self::Area | Self::AreaSoft | Self::FurnaceIso => Kind::Patch,
-            Self::AreaHead | Self::Env => Kind::Straight,
-            Self::BoxSingle | Self::Box | Self::Head | Self::Lamps => Kind::Wavy,
-            Self::FurnaceOne => Kind::Single,
+            Self::Portraits => &[portrait::WAVY, portrait::CURLY, portrait::STRAIGHT],
+            Self::Wavy => &[portrait::WAVY],
+            Self::Curly => &[portrait::CURLY],
+            Self::Straight => &[portrait::STRAIGHT],
+            _ => &[],
+        }
+    }
+
+    /// Returns the kind of procedural hair that grows in the scene, or `None` for portraits, whose heads have hairstyles.
+    #[must_use]
+    pub fn kind(self) -> Option<Kind> {
+        match self {
+            Self::Area | Self::AreaSoft | Self::FurnaceIso => Some(Kind::Patch),
+            Self::AreaHead | Self::Env => Some(Kind::Straight),
+            Self::BoxSingle | Self::Box | Self::Head | Self::Lamps => Some(Kind::Wavy),
+            Self::FurnaceOne => Some(Kind::Single),
+            Self::Portraits | Self::Wavy | Self::Curly | Self::Straight => None,
         }
     }
 }
 
-/// Grows the hair of a scene, of `count` strands if the kind has many.
+/// Grows the hair of a scene, of `count` strands if the kind has many, or on each head of portraits.
 ///
 /// # Errors
 ///
 /// Returns a usage error if the count of strands is out of its range.
 pub fn grow(name: Name, count: usize) -> Result<Strands, Error> {
-    groom(name, count)
-        .grow(&Flattening::default())
-        .map_err(|problem| Error::Usage(problem.to_string()))
+    match groom(name, count) {
+        Some(groom) => groom.grow(&Flattening::default()),
+        None => portrait::grow(name.portraits(), count),
+    }
+    .map_err(|problem| Error::Usage(problem.to_string()))
 }
 
 /// Estimates how many segments [`grow`] will make, without growing all strands.
@@ -124,14 +161,18 @@ pub fn grow(name: Name, count: usize) -> Result<Strands, Error> {
 ///
 /// Returns a usage error if the count of strands is out of its range.
 pub fn estimate_segments(name: Name, count: usize) -> Result<u64, Error> {
-    groom(name, count)
-        .estimate_segments(&Flattening::default())
-        .map_err(|problem| Error::Usage(problem.to_string()))
+    match groom(name, count) {
+        Some(groom) => groom
+            .estimate_segments(&Flattening::default())
+            .map_err(|problem| Error::Usage(problem.to_string())),
+        None => Ok(portrait::most_segments(name.portraits(), count)),
+    }
 }
 
-fn groom(name: Name, count: usize) -> Groom {
-    let groom = Groom::new(name.kind(), count);
-    if groom.kind == Kind::Single {
+/// Returns the settings of the hair of a scene, or `None` for portraits.
+fn groom(name: Name, count: usize) -> Option<Groom> {
+    let groom = Groom::new(name.kind()?, count);
+    Some(if groom.kind == Kind::Single {
         Groom {
             length: 400.0,
             radius: 10.0,
@@ -139,7 +180,7 @@ fn groom(name: Name, count: usize) -> Groom {
         }
     } else {
         groom
-    }
+    })
 }
 
 /// Positions of the four lamps, in cm: behind, to the sides and above.
@@ -222,6 +263,9 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
         Name::Env => sky = light::Sky::default().environment().into(),
         Name::BoxSingle | Name::Box => rectangles = cornell_box(centre, scale),
         Name::FurnaceOne | Name::FurnaceIso => sky = light::Constant.into(),
+        Name::Portraits | Name::Wavy | Name::Curly | Name::Straight => {
+            rectangles = portrait::studio(centre, scale)
+        }
     }
     if let Some(env) = env {
         sky = env.into();
@@ -240,16 +284,20 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
         Name::AreaHead | Name::Env | Name::Head | Name::Lamps => {
             Camera::new(at(0.0, 6.0, 68.0), at(0.0, -2.0, 0.0), 36.0, size)
         }
+        Name::Portraits | Name::Wavy | Name::Curly | Name::Straight => portrait::camera(size),
     };
     let camera = camera.orbit(centre, turn);
-    let on_head = !imported && matches!(name.kind(), Kind::Straight | Kind::Wavy);
-    let head = if on_head {
-        Some(Head::ellipsoid(Ellipsoid {
+    let head = match name.kind() {
+        _ if imported => head,
+        Some(Kind::Straight | Kind::Wavy) => Some(Head::ellipsoid(Ellipsoid {
             centre: Vec3::ZERO,
             radii: 0.995 * HEAD,
-        }))
-    } else {
-        head
+        })),
+        Some(_) => head,
+        None => Some(Head {
+            albedo: portrait::ALBEDO,
+            ..Head::mesh(portrait::busts(name.portraits()).map_err(Error::Usage)?)
+        }),
     };
     let rectangle_sampling = RectangleSampling::default();
     let gap = 1e-3 * scale;
@@ -257,6 +305,7 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
         strands,
         tree,
         hair,
+        others: Vec::new(),
         head,
         rectangles,
         rectangle_sampling,

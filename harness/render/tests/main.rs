@@ -20,6 +20,7 @@ mod memory;
 mod numbers;
 mod part;
 mod picture;
+mod portrait;
 mod protocol;
 mod radiance;
 mod rays;

@@ -46,11 +46,9 @@ impl Ground {
                 (strands, head, [hair_digest, head_digest])
             }
             None => {
-                memory::check(
-                    scenes::estimate_segments(flags.scene, flags.strands)?,
-                    pixels,
-                )?;
-                (scenes::grow(flags.scene, flags.strands)?, None, [0; 2])
+                let count = strands(flags);
+                memory::check(scenes::estimate_segments(flags.scene, count)?, pixels)?;
+                (scenes::grow(flags.scene, count)?, None, [0; 2])
             }
         };
         Ok(Self {
@@ -86,14 +84,29 @@ impl Ground {
     }
 }
 
-/// Returns the materials that the flags select, at least one.
+/// Returns the number of strands of procedural hair, of each head if there are several.
+pub(super) fn strands(flags: &Place) -> usize {
+    flags.strands.unwrap_or(flags.scene.defaults().strands)
+}
+
+/// Returns true if the heads of portraits keep their own materials, because the flags name none.
+pub(super) fn has_own_materials(looks: &Looks, place: &Place) -> bool {
+    let is_named = looks.hair.is_some() || looks.model.is_some() || !looks.material.is_empty();
+    !place.scene.portraits().is_empty() && place.import.is_none() && !is_named
+}
+
+/// Returns the materials that the flags select, at least one: of portraits without a named material one for each head.
 ///
 /// # Errors
 ///
 /// Returns an error if a file cannot be read, or if a name or a value is rejected.
 pub(super) fn choices(flags: &Looks, place: &Place) -> Result<Vec<Choice>, Error> {
     let mut choices = Vec::new();
-    if flags.material.is_empty() {
+    if has_own_materials(flags, place) {
+        for portrait in place.scene.portraits() {
+            choices.push(portrait.hair(flags.sampler.as_deref())?);
+        }
+    } else if flags.material.is_empty() {
         let preset = place.scene.defaults().preset;
         let preset = flags.hair.as_deref().unwrap_or(preset);
         let model = flags.model.as_deref().unwrap_or(MODEL);

@@ -2,7 +2,7 @@
 
 mod description;
 
-use super::place::{Ground, choices};
+use super::place::{Ground, choices, has_own_materials, strands};
 use crate::args::Render;
 use crate::film::{self, Crop, Film};
 use crate::formats::write_hair;
@@ -11,6 +11,7 @@ use crate::layers::{self, Beside};
 use crate::material::Hair;
 use crate::part::{self, Part};
 use crate::picture;
+use crate::portrait;
 use crate::saver::Saver;
 use crate::scene::Scene;
 use crate::scenes::Name;
@@ -65,11 +66,13 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     }
     let describe = |hair: &Named| describe(flags, &hair.line, &settings, crop, &ground);
     let runs: Vec<String> = hairs.iter().map(describe).collect();
-    let mut scene = ground.scene(&flags.place, hairs[0].hair, flags.size.0)?;
+    let mut scene = ground.scene(&flags.place, hairs[0].hairs[0], flags.size.0)?;
     outs.iter().try_for_each(|out| check_out(out))?;
     let interrupt = Interrupt::watch();
     for ((hair, out), run) in hairs.iter().zip(&outs).zip(runs) {
-        scene.hair = hair.hair;
+        scene.hair = hair.hairs[0];
+        let heads = hair.hairs[1..].iter().copied();
+        scene.others = portrait::firsts(strands(&flags.place)).zip(heads).collect();
         picture(flags, &scene, &settings, crop, run, out, &interrupt)?;
     }
     Ok(())
@@ -167,7 +170,8 @@ pub(super) fn finish(
 
 /// Hair of a picture, with its name and its description.
 struct Named {
-    hair: Hair,
+    /// Material of the hair of each head, or of all hair.
+    hairs: Vec<Hair>,
     /// Name of the hair, which is part of the name of the file if there are several pictures.
     name: String,
     /// Description of everything that the scattering of the hair depends on.
@@ -181,7 +185,7 @@ fn hairs(flags: &Render, settings: &Settings) -> Result<Vec<Named>, Error> {
     let is_made = !flags.looks.material.is_empty() || !flags.looks.set.is_empty();
     if flags.place.scene == Name::FurnaceIso && !is_chosen && !is_made {
         return Ok(vec![Named {
-            hair: Hair::Isotropic,
+            hairs: vec![Hair::Isotropic],
             name: "isotropic".to_owned(),
             line: "hair=isotropic".to_owned(),
         }]);
@@ -190,7 +194,7 @@ fn hairs(flags: &Render, settings: &Settings) -> Result<Vec<Named>, Error> {
         let energy = flags.energy.unwrap_or(Energy::Raw);
         let hair = choice.hair(energy)?;
         let [mean, worst] = hair.mean_and_worst_albedo();
-        let whose = if flags.looks.material.is_empty() {
+        let whose = if flags.looks.material.is_empty() && flags.place.scene.portraits().is_empty() {
             "the hair"
         } else {
             &choice.name
@@ -208,15 +212,25 @@ fn hairs(flags: &Render, settings: &Settings) -> Result<Vec<Named>, Error> {
         }
         let line = format!("{} energy={energy:?}", choice.describe());
         Ok(Named {
-            hair,
+            hairs: vec![hair],
             name: choice.name,
             line,
         })
     };
-    choices(&flags.looks, &flags.place)?
+    let all = choices(&flags.looks, &flags.place)?
         .into_iter()
         .map(named)
-        .collect()
+        .collect::<Result<Vec<_>, Error>>()?;
+    if !has_own_materials(&flags.looks, &flags.place) {
+        return Ok(all);
+    }
+    // One picture of all heads.
+    let line: Vec<&str> = all.iter().map(|hair| hair.line.as_str()).collect();
+    Ok(vec![Named {
+        line: line.join(" "),
+        name: flags.place.scene.word().to_owned(),
+        hairs: all.into_iter().flat_map(|hair| hair.hairs).collect(),
+    }])
 }
 
 /// Returns the file of each picture. If there are several, each name contains the name of the hair.

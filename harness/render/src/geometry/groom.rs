@@ -1,7 +1,7 @@
 //! Procedural hair of several kinds, grown strand by strand.
 
 mod head;
-mod random;
+pub(crate) mod random;
 mod sheet;
 
 use super::spline::{Basis, Flattening, Spline};

@@ -80,8 +80,10 @@ impl Head {
             }
             Shape::Mesh(mesh) => {
                 let (t, triangle) = mesh.1.closest(ray)?;
-                let normal = mesh.0.normal(triangle);
-                let behind = normal.dot(ray.direction) > 0.0;
+                let behind = mesh.0.normal(triangle).dot(ray.direction) > 0.0;
+                let normal = mesh
+                    .0
+                    .shading_normal(triangle, ray.origin + t * ray.direction);
                 Some((t, if behind { -normal } else { normal }))
             }
         }

@@ -108,7 +108,7 @@ impl Point {
             FiberFrame8::splat(&frame),
         );
         lap(Phase::Frames);
-        let prepared = scene.hair.prepare(local);
+        let prepared = scene.hair_of(hit.strand).1.prepare(local);
         lap(Phase::Kernels);
         Self {
             hit,

@@ -186,7 +186,7 @@ impl Packet {
     }
 }
 
-/// Scatters paths at hair, eight hits at a time. Lanes of the last packet that have no hit repeat its first.
+/// Scatters paths at hair, eight hits of a material at a time. Lanes of the last packet that have no hit repeat its first.
 fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave) {
     let Wave {
         paths,
@@ -194,7 +194,13 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
         shadows,
         ..
     } = wave;
-    for packet in hits.chunks(8) {
+    if !scene.others.is_empty() {
+        hits.sort_by_key(|(_, hit)| scene.hair_of(hit.strand).0);
+    }
+    let is_same = |a: &(u32, tree::Hit), b: &(u32, tree::Hit)| {
+        scene.hair_of(a.1.strand).0 == scene.hair_of(b.1.strand).0
+    };
+    for packet in hits.chunk_by(is_same).flat_map(|same| same.chunks(8)) {
         let Packet {
             frames,
             origins,
@@ -202,7 +208,7 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
         } = Packet::new(scene, paths, packet);
         let lanes = |lane: usize| packet.get(lane).unwrap_or(&packet[0]);
         lap(Phase::Frames);
-        let prepared = scene.hair.prepare8(&hits);
+        let prepared = scene.hair_of(packet[0].1.strand).1.prepare8(&hits);
         lap(Phase::Kernels);
 
         // Uniform numbers, and directions towards lights.

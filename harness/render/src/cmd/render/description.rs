@@ -1,7 +1,7 @@
 //! Description of a run, by which runs with different settings are told apart.
 
 use crate::args::{Place, Render, Size};
-use crate::cmd::place::Ground;
+use crate::cmd::place::{Ground, strands};
 use crate::film::Crop;
 use crate::part::build;
 use crate::transport::Settings;
@@ -42,7 +42,7 @@ pub(super) fn describe(
     } = flags;
     let Place {
         scene,
-        strands,
+        strands: _,
         scale,
         radius,
         up,
@@ -85,7 +85,10 @@ pub(super) fn describe(
         format!(
             "size={columns}x{rows} crop={x},{y},{width},{height} turn={turn} backdrop={backdrop:?} env={env:016x}"
         ),
-        format!("strands={strands} import={file:016x} scale={scale:?} radius={radius:?} up={up:?}"),
+        format!(
+            "strands={} import={file:016x} scale={scale:?} radius={radius:?} up={up:?}",
+            strands(place)
+        ),
         format!("curve={curve:?} head={mesh:016x} head_scale={head_scale:?} scalp={scalp:?}"),
         format!("follow={follow} spread={spread} rectangles={rectangles:?} meet={meet:?}"),
         format!("integrator={integrator:?} xi={sequence:?} seed={seed} mis={mis:?}"),
