@@ -1,6 +1,6 @@
 //! Errors that end a run of a program with an exit code other than 0.
 
-use crate::interrupt::Signal;
+use crate::signal::Signal;
 use core::fmt;
 use hairis::ParamError;
 use std::io;

@@ -1,45 +1,11 @@
 //! Signals that ask a run to end, which first saves its finished work.
 
 use crate::error::Error;
+use crate::program::say;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Arc;
 
-/// Signal that asks a program to end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Signal {
-    /// SIGINT, which a terminal sends for Ctrl-C.
-    Interrupt,
-    /// SIGTERM, which is sent by `kill`, by `timeout`, and by schedulers before they pre-empt a job.
-    Terminate,
-}
-
-impl Signal {
-    const ALL: [Self; 2] = [Self::Interrupt, Self::Terminate];
-
-    /// Returns the number of the signal, which is the same on every Unix.
-    #[must_use]
-    pub const fn number(self) -> u8 {
-        match self {
-            Self::Interrupt => 2,
-            Self::Terminate => 15,
-        }
-    }
-
-    /// Returns the name of the signal, such as `SIGINT`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Interrupt => "SIGINT",
-            Self::Terminate => "SIGTERM",
-        }
-    }
-
-    fn from_number(number: usize) -> Option<Self> {
-        Self::ALL
-            .into_iter()
-            .find(|signal| usize::from(signal.number()) == number)
-    }
-}
+pub use crate::signal::Signal;
 
 /// Flag that records whether a signal has asked this process to end. Clones share the flag.
 #[derive(Clone, Debug, Default)]
@@ -55,7 +21,7 @@ impl Interrupt {
         let watched = Self::default();
         #[cfg(unix)]
         if let Err(error) = watched.watch_signals() {
-            crate::program::say(&format!(
+            say(&format!(
                 "cannot watch for signals: {error}; SIGINT and SIGTERM end the run at once"
             ));
         }

@@ -5,4 +5,5 @@ pub mod error;
 pub mod files;
 pub mod interrupt;
 pub mod program;
+mod signal;
 pub mod trial;
