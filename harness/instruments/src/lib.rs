@@ -19,5 +19,6 @@ pub mod shard;
 pub mod stats;
 pub mod table;
 pub mod terminal;
+mod wrap;
 
 pub use hairis_program::{error, files, interrupt, program};

@@ -6,7 +6,7 @@ use crate::markup::{self, escape};
 #[cfg(feature = "png")]
 use crate::plot::png;
 use crate::table::Table;
-use crate::terminal::wrapped;
+use crate::wrap::wrapped;
 use rayon::prelude::*;
 use std::fs;
 use std::io::Write;

@@ -3,7 +3,7 @@
 pub mod number;
 
 use crate::markup;
-use crate::terminal::wrapped;
+use crate::wrap::wrapped;
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, TableStyle};
 use unicode_width::UnicodeWidthStr as _;
 

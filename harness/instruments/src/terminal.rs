@@ -7,6 +7,8 @@ use crate::table::Table;
 use std::io::{self, Write as _, stderr, stdout};
 use terminal_size::{Width, terminal_size_of};
 
+pub use crate::wrap::wrapped;
+
 /// Width of text where no terminal says otherwise, and the largest in any, in columns.
 pub const WIDTH: usize = 100;
 
@@ -22,13 +24,6 @@ pub fn columns() -> Option<u16> {
 pub fn width() -> usize {
     let size = terminal_size_of(stdout()).or_else(|| terminal_size_of(stderr()));
     size.map_or(WIDTH, |(Width(columns), _)| usize::from(columns).min(WIDTH))
-}
-
-/// Breaks a text into lines of at most `width` columns between words. Lines after the first begin with `indent`.
-#[must_use]
-pub fn wrapped(text: &str, width: usize, indent: &str) -> String {
-    let options = textwrap::Options::new(width).subsequent_indent(indent);
-    textwrap::fill(text, options)
 }
 
 /// Ends a command with the head of its report on standard output. If `tables` are given, these are standard output, as wide as the
