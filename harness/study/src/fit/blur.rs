@@ -1,6 +1,6 @@
 //! Blur of values that are given at directions of a quadrature.
 
-use crate::difference::SIGMA_DEG;
+use crate::difference::blur::SIGMA_DEG;
 use core::f64::consts::{PI, TAU};
 use hairis_instruments::direction::direction;
 
