@@ -11,6 +11,9 @@ pub(super) type Strategy = Option<Sampler>;
 /// Model, with the strategy by which its directions are drawn.
 pub(super) type Estimator = (ModelKind, Strategy);
 
+/// Samplers that sentences distinguish: the published one, and the matched one that is the default of a renderer.
+pub(super) const TOLD: [Sampler; 2] = [Sampler::Published, Sampler::Matched];
+
 /// Returns every strategy, in the order of reports.
 pub(super) fn strategies() -> impl Iterator<Item = Strategy> + Clone {
     samplers().chain([None])

@@ -1,8 +1,7 @@
 //! Finished study, joined from its parts.
 
-use super::estimator::set_bounds;
+use super::estimator::{TOLD, set_bounds};
 use super::part::{self, FORMAT, Finished, Header, Read, refuse};
-use super::refit::Refits;
 use super::{Grid, Place};
 use hairis::ParamError;
 use hairis_harness::materials::NamedMaterial;
@@ -16,6 +15,13 @@ use hairis_instruments::shard::Shard;
 use hairis_instruments::stats::Estimate;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
+
+/// V on the refitted Cauchy model in a cell, for each of [`TOLD`], light by light.
+pub(super) type RefitVariances = [Vec<Estimate>; TOLD.len()];
+
+/// V on the refitted Cauchy model, by cell. V is unknown under an environment that is not given.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Refits(pub(super) Vec<RefitVariances>);
 
 /// Study that is finished: every cell, in the order of the grid.
 #[derive(Clone, Debug)]

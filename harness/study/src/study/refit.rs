@@ -1,9 +1,10 @@
 //! Refits: samples that the all-Cauchy model saves once its parameters are fitted to the look of the Gaussian one.
 
 use super::cell::measure_refit;
-use super::finished::Study;
+use super::estimator::TOLD;
+use super::finished::{RefitVariances, Refits, Study};
 use super::grid::{Cell, columns_of};
-use super::view::{Gain, TOLD, gain};
+use super::view::{Gain, gain};
 use crate::difference::Difference;
 use core::cell::OnceCell;
 use hairis::ParamError;
@@ -18,13 +19,6 @@ use hairis_instruments::progress::Progress;
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::{Table, number};
 use hairis_variants::Parameters as _;
-
-/// V on the refitted Cauchy model in a cell, for each of [`TOLD`], light by light.
-type RefitVariances = [Vec<Estimate>; TOLD.len()];
-
-/// V on the refitted Cauchy model, by cell. V is unknown under an environment that is not given.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Refits(Vec<RefitVariances>);
 
 impl Study {
     /// Measures V on the Cauchy model of [`Width::Refitted`](crate::difference::Width::Refitted). Without an environment, V under it stays

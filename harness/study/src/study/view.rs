@@ -5,7 +5,6 @@ use super::estimator::{Estimator, name};
 use super::finished::Study;
 use super::rows::Row;
 use hairis_harness::rays::RayTimes;
-use hairis_harness::sampler::Sampler;
 use hairis_harness::variance::{MAX_RELATIVE_ERROR, Measured, RAYS};
 use hairis_instruments::plot::{Axis, Bar, bars};
 use hairis_instruments::stats::Estimate;
@@ -81,9 +80,6 @@ pub(super) enum Counted {
 
 /// Samples per shading point in figures and sentences that state one number only: that of direct lighting.
 pub(super) const MANY: usize = 16;
-
-/// Samplers that sentences distinguish: the published one, and the matched one that is the default of a renderer.
-pub(super) const TOLD: [Sampler; 2] = [Sampler::Published, Sampler::Matched];
 
 impl Study {
     /// Returns V of `base` and of `other` in every cell.

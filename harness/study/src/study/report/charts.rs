@@ -1,11 +1,11 @@
 //! Plots of a study: variance, efficiency, gains and weights.
 
-use super::super::estimator::{Estimator, name, published, samplers, strategies};
+use super::super::estimator::{Estimator, TOLD, name, published, samplers, strategies};
 use super::super::finished::Study;
 use super::super::grid::GridAxis;
 use super::super::rows::Row;
 use super::super::summary::on_gaussian;
-use super::super::view::{Counted, Gain, MANY, TOLD, mean_v};
+use super::super::view::{Counted, Gain, MANY, mean_v};
 use hairis_harness::sampler::Sampler;
 use hairis_harness::subject::ModelKind;
 use hairis_harness::times::PER_POINT;

@@ -1,10 +1,10 @@
 //! Findings of a study in sentences. Every word that judges follows from figures and their errors.
 
 use super::super::equal_time::Sign;
-use super::super::estimator::{Estimator, Strategy, name, published, samplers};
+use super::super::estimator::{Estimator, Strategy, TOLD, name, published, samplers};
 use super::super::finished::Study;
 use super::super::refit::saved;
-use super::super::view::{Counted, MANY, TOLD};
+use super::super::view::{Counted, MANY};
 use crate::difference::{Difference, Differences, Summary, Width, albedo_ratio};
 use hairis_harness::lights::{environment, in_words};
 use hairis_harness::sampler::Sampler;
