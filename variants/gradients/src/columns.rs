@@ -1,11 +1,21 @@
 //! Arguments of calls: slices of one length, which every call checks.
 
-use crate::generated::{GROUP, INPUTS, OUTPUTS, RESULTS, finite_or_0};
 use core::cell::Cell;
 use core::fmt;
 use core::slice;
 use hairis::columns::{HitColumns, LengthError};
 use hairis::f32x8;
+
+/// Numbers of an evaluation: red, green, blue, and the density.
+const RESULTS: usize = 4;
+/// Numbers of a hit and a direction: `wo`, `h`, `wi`.
+const ARGUMENTS: usize = 7;
+/// Numbers that are read for each hit: the arguments, and a weight per result.
+pub(crate) const INPUTS: usize = ARGUMENTS + RESULTS;
+/// Numbers that are written for each hit: the results, and a derivative per argument.
+pub(crate) const OUTPUTS: usize = RESULTS + ARGUMENTS;
+/// Packets of one call of a dispatched function.
+pub(crate) const GROUP: usize = 16;
 
 /// Error of a call that was rejected before anything was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,6 +128,11 @@ const OUTPUT_NAMES: [&str; OUTPUTS] = [
     "value.r", "value.g", "value.b", "pdf", "d_wo.u", "d_wo.v", "d_wo.w", "d_h", "d_wi.u",
     "d_wi.v", "d_wi.w",
 ];
+
+/// Returns a derivative, or 0 if it is not finite.
+pub(crate) fn finite_or_0(x: f32) -> f32 {
+    if x.is_finite() { x } else { 0.0 }
+}
 
 fn three<T>(columns: Option<[T; 3]>) -> [Option<T>; 3] {
     columns.map_or([None, None, None], |columns| columns.map(Some))

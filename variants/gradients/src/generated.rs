@@ -1,6 +1,6 @@
 //! Generated derivatives, and the models that have them.
 
-use crate::columns::Call;
+use crate::columns::{Call, GROUP, INPUTS, OUTPUTS, finite_or_0};
 use core::cell::Cell;
 use core::marker::PhantomData;
 use hairis::f32x8;
@@ -8,20 +8,8 @@ use hairis::simd::{Kernel, LaneStruct, Lanes, Level, Path};
 use hairis::{Gaussian, Matched, Published};
 use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Registered};
 
-/// Numbers of an evaluation: red, green, blue, and the density.
-pub(crate) const RESULTS: usize = 4;
-/// Numbers of a hit and a direction: `wo`, `h`, `wi`.
-pub(crate) const ARGUMENTS: usize = 7;
-/// Numbers that are read for each hit: the arguments, and a weight per result.
-pub(crate) const INPUTS: usize = ARGUMENTS + RESULTS;
-
-/// Numbers that are written for each hit: the results, and a derivative per argument.
-pub(crate) const OUTPUTS: usize = RESULTS + ARGUMENTS;
-
 /// Packets whose derivatives are summed in single precision.
 const BLOCK: usize = 64;
-/// Packets of one call of a dispatched function.
-pub(crate) const GROUP: usize = 16;
 /// Packets that take turns: each chunk of operations runs over all of them before the next chunk does. The numbers that they keep in
 /// between should stay in the second level of cache.
 const TURNS: usize = 4;
@@ -285,11 +273,6 @@ fn run_in<G: Rows<S, N, K>, const S: usize, const N: usize, const K: usize>(
 
 fn is_finite(lanes: &f32x8) -> bool {
     lanes.to_array().into_iter().all(f32::is_finite)
-}
-
-/// Returns a derivative, or 0 if it is not finite.
-pub(crate) fn finite_or_0(x: f32) -> f32 {
-    if x.is_finite() { x } else { 0.0 }
 }
 
 /// Operation on a model of the list whose type has derivatives, which [`visit`] calls with that type.
