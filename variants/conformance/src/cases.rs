@@ -1,17 +1,17 @@
 //! Random cases of properties, which are drawn from strategies, shrunk, and printed as code.
 
+pub(crate) mod case;
 mod code;
 pub(crate) mod inputs;
 mod regressions;
 
 use crate::erased::hits::{HitsSet, HitsSubject};
-use crate::erased::{
-    Choice, Direction, ErasedBsdf8, ErasedSubject, MaterialSet, NamedMaterial, Which,
-};
+use crate::erased::{ErasedBsdf8, ErasedSubject, MaterialSet, NamedMaterial, Which};
 use crate::failure::{Failure, Outcome, Worst};
-use crate::probe::{Draws, hits8, run_seed};
+use crate::probe::{Direction, Draws, hits8, run_seed};
 use crate::size::cases;
 use crate::subject::{Claims, Subject};
+use case::{Choice, Choices, Source};
 use hairis::simd::Level;
 use hairis::{Hit, LobeMask};
 use inputs::{Aim, Drawn, Inputs};
@@ -20,56 +20,10 @@ use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use regressions::Regressions;
 use std::rc::Rc;
 
+pub use case::{Case, Row};
+
 /// Largest number of steps in which one case is shrunk.
 const STEPS: usize = 20_000;
-
-/// Shading point of a case, with the queries that a property makes of it.
-#[derive(Clone, Copy, Debug)]
-pub struct Row<P> {
-    /// Parameters of the material.
-    pub material: P,
-    /// Hit in the fibre's frame.
-    pub hit: Hit,
-    /// Direction to evaluate.
-    pub wi: Direction,
-    /// Uniform numbers to sample with.
-    pub xi: [f32; 3],
-    /// True if the tolerances of the claims apply, which are stated only for materials that the subject names.
-    pub tolerances: bool,
-}
-
-/// Case of a property: eight shading points, which fill the lanes of a packet.
-#[derive(Clone, Debug)]
-pub struct Case<P> {
-    /// Shading points, one per lane.
-    pub rows: [Row<P>; 8],
-    /// Lobes, for properties of masks.
-    pub lobes: LobeMask,
-    /// Order of the lanes, for the property of permuted lanes.
-    pub order: [usize; 8],
-}
-
-impl<P> Case<P> {
-    /// Makes a case with the same shading point in all lanes, and all lobes.
-    pub fn new(row: impl Fn() -> Row<P>) -> Self {
-        Self {
-            rows: core::array::from_fn(|_| row()),
-            lobes: LobeMask::ALL,
-            order: [0, 1, 2, 3, 4, 5, 6, 7],
-        }
-    }
-}
-
-/// Origin of the cases of a property.
-#[derive(Clone, Debug)]
-pub enum Source {
-    /// Random numbers.
-    Fresh,
-    /// The regressions of a test, then random numbers. A failure is added to the regressions.
-    Kept(Regressions),
-    /// One case that a test contains as code.
-    Pasted(Box<Case<Choice>>),
-}
 
 /// Subject whose cases have another source than random numbers alone.
 ///
@@ -118,7 +72,7 @@ impl<S: Subject> ErasedSubject for Replay<'_, S> {
         self.subject.set(which)
     }
 
-    fn choices(&self, which: Which) -> inputs::Choices {
+    fn choices(&self, which: Which) -> Choices {
         self.subject.choices(which)
     }
 

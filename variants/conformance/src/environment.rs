@@ -7,9 +7,9 @@
 
 use crate::cases::Property;
 use crate::cases::inputs::Inputs;
-use crate::erased::{COLUMNS, Direction, ErasedBsdf, ErasedSubject, NamedMaterial, Which};
+use crate::erased::{COLUMNS, ErasedBsdf, ErasedSubject, NamedMaterial, Which};
 use crate::failure::{Failure, Outcome};
-use crate::probe::{Draws, columns, hits8, packet, triples};
+use crate::probe::{Direction, Draws, columns, hits8, packet, triples};
 use crate::totality;
 use core::hint::black_box;
 use hairis::Hit;

@@ -4,21 +4,14 @@
 
 pub(crate) mod hits;
 
-use crate::cases::Source;
-use crate::cases::inputs::Choices;
+use crate::cases::case::{ANY, Choice, Choices, Source};
 use crate::subject::{Claims, Expected, ParamsOf, Subject};
-use core::any::Any;
-use core::fmt;
-use glam::Vec3;
 use hairis::columns::{EvalColumns, LengthError, SampleColumns};
 use hairis::model::{DynBsdf, DynBsdf8, Model};
 use hairis::simd::Level;
 use hairis::{Bsdf, Bsdf8, Hit, Hit8, Lobe, LobeMask, Material, Material8};
 use proptest::prelude::*;
 use std::rc::Rc;
-
-/// Direction, or any vector, in the fibre's frame.
-pub(crate) type Direction = Vec3;
 
 /// [`Subject`] without the type of its model. Every subject implements it, so pass a reference to any subject.
 pub trait ErasedSubject {
@@ -38,39 +31,6 @@ pub trait ErasedSubject {
     #[doc(hidden)]
     fn source(&self) -> Source {
         Source::Fresh
-    }
-}
-
-/// Parameters of a material that was drawn or pasted, without their type.
-#[derive(Clone)]
-pub struct Choice {
-    params: Rc<dyn Any>,
-    name: &'static str,
-    code: Rc<str>,
-}
-
-/// Name of materials that the subject does not name.
-const ANY: &str = "any material";
-
-impl Choice {
-    pub(crate) fn pasted(params: Rc<dyn Any>) -> Self {
-        let (name, code) = ("the pasted material", "material".into());
-        Self { params, name, code }
-    }
-
-    pub(crate) fn is_named(&self) -> bool {
-        self.name != ANY
-    }
-
-    /// Returns the code of the parameters, in which `subject` is the subject of the test.
-    pub(crate) fn code(&self) -> &str {
-        &self.code
-    }
-}
-
-impl fmt::Debug for Choice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.code)
     }
 }
 

@@ -2,10 +2,10 @@
 
 use crate::environment::{DOWN, with_mode};
 use crate::erased::hits::{Columns, HitMaterials, HitsCall, HitsSet, HitsSubject};
-use crate::erased::{COLUMNS, Direction, MaterialSet, NamedMaterial};
+use crate::erased::{COLUMNS, MaterialSet, NamedMaterial};
 use crate::failure::{Failure, Outcome};
 use crate::lanes::{eval_bits, sample_bits};
-use crate::probe::{Draws, hits8, packet, triples};
+use crate::probe::{Direction, Draws, hits8, packet, triples};
 use crate::size::lengths;
 use crate::slices::{Room, UNTOUCHED};
 use hairis::Hit;

@@ -1,9 +1,9 @@
 //! Property that the density of all lobes, and of each alone, integrates to the share of samples that are kept.
 
-use crate::erased::{Direction, ErasedBsdf, ErasedSubject, Which};
+use crate::erased::{ErasedBsdf, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::mesh::{Mesh, Samples};
-use crate::probe::{columns, narrow, sobol, some_hits};
+use crate::probe::{Direction, columns, narrow, sobol, some_hits};
 use hairis::simd::Level;
 
 /// Kronrod's extension of Gauss' rule of three points, from -1 to 1: node, weight, and Gauss' weight.

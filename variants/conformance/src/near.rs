@@ -1,7 +1,7 @@
 //! Effect of rounded inputs on results, which is the difference allowed between two evaluations of one formula.
 
-use crate::erased::{Direction, ErasedBsdf, NamedMaterial};
-use crate::probe::{cos_theta, distance, narrow, rounded};
+use crate::erased::{ErasedBsdf, NamedMaterial};
+use crate::probe::{Direction, cos_theta, distance, narrow, rounded};
 use hairis::{Eval, Hit, Sample};
 
 /// Rounding of an angle, or of a uniform number, as it accumulates in single-precision arithmetic.

@@ -2,9 +2,9 @@
 
 use crate::cases::Property;
 use crate::cases::inputs::Inputs;
-use crate::erased::{COLUMNS, Direction, ErasedBsdf, ErasedBsdf8, ErasedSubject, Which};
+use crate::erased::{COLUMNS, ErasedBsdf, ErasedBsdf8, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome};
-use crate::probe::{hits, hits8, packet, sobol, triples};
+use crate::probe::{Direction, hits, hits8, packet, sobol, triples};
 use hairis::simd::{Level, f32x8};
 use hairis::{Eval, Hit, Sample8};
 

@@ -1,11 +1,14 @@
 //! Numbers, directions and hits at which models are tested, and their conversion to lanes.
 
-use crate::erased::Direction;
 use crate::size::cases;
 use core::f64::consts::PI;
+use glam::Vec3;
 use hairis::simd::f32x8;
 use hairis::{Hit, Hit8, Lobe, LobeMask, Vec3x8};
 use std::sync::OnceLock;
+
+/// Direction, or any vector, in the fibre's frame.
+pub(crate) type Direction = Vec3;
 
 /// Largest uniform number below 1.
 pub(crate) const LAST: f32 = 1.0 - f32::EPSILON / 2.0;

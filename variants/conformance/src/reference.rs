@@ -3,9 +3,9 @@
 use crate::cases::Property;
 use crate::cases::inputs::Inputs;
 use crate::comparison::relative;
-use crate::erased::{Direction, ErasedSubject, Which};
+use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst, not_claimed};
-use crate::probe::{cos_theta, double, packet, rounded, triples};
+use crate::probe::{Direction, cos_theta, double, packet, rounded, triples};
 use crate::subject::{Expected, Tolerance};
 use core::cell::Cell;
 use hairis::simd::Level;

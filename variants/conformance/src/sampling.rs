@@ -1,7 +1,8 @@
 //! Property that a sample reports the value and the density of its direction.
 
+use crate::cases::Property;
+use crate::cases::case::Source;
 use crate::cases::inputs::Inputs;
-use crate::cases::{Property, Source};
 use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Failure, Outcome};
 use crate::near::Nearby;

@@ -1,9 +1,9 @@
 //! Property that slices give the bits of packets for every length and alignment, and that nothing is written beyond them.
 
-use crate::erased::{COLUMNS, Direction, ErasedBsdf, ErasedSubject, WEIGHT_COLUMNS, Which};
+use crate::erased::{COLUMNS, ErasedBsdf, ErasedSubject, WEIGHT_COLUMNS, Which};
 use crate::failure::{Failure, Outcome};
 use crate::lanes::{eval_bits, sample_bits};
-use crate::probe::{Draws, packet, triples};
+use crate::probe::{Direction, Draws, packet, triples};
 use crate::size::lengths;
 use hairis::columns::LengthError;
 use hairis::simd::Level;

@@ -1,8 +1,8 @@
 //! Property that eight lanes use their instruction sets, because every function over lanes is inlined.
 
-use crate::erased::{Direction, ErasedBsdf, ErasedSubject, Which};
+use crate::erased::{ErasedBsdf, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome};
-use crate::probe::{Draws, packet, triples};
+use crate::probe::{Direction, Draws, packet, triples};
 use core::hint::black_box;
 use hairis::simd::{Level, f32x8};
 use std::time::Instant;

@@ -1,7 +1,7 @@
 //! Conversion of cases to code.
 
-use super::{Case, Row};
-use crate::erased::{Choice, Direction};
+use super::case::{Case, Choice, Row};
+use crate::probe::Direction;
 use core::fmt::Write;
 use hairis::{Hit, Lobe, LobeMask};
 

@@ -1,16 +1,13 @@
 //! Strategies for the inputs of properties.
 
-use crate::erased::{Choice, Direction};
-use crate::probe::{LAST, direction, hits, masks, narrow};
+use super::case::{Choice, Choices};
+use crate::probe::{Direction, LAST, direction, hits, masks, narrow};
 use crate::strategies::vectors;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::{Hit, LobeMask};
 use proptest::array::{uniform3, uniform8};
 use proptest::prelude::*;
 use proptest::sample::select;
-
-/// Strategy for the materials of a subject: the named ones, and any legal one.
-pub(crate) type Choices = BoxedStrategy<Choice>;
 
 /// Direction itself, or the direction sampled with these numbers if that sample is kept.
 #[derive(Clone, Copy, Debug)]
