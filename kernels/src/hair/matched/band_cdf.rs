@@ -3,8 +3,7 @@
 use super::MatchedBell;
 use super::bands::bands;
 use super::hemispheres::Hemispheres;
-use super::prepared::shared4;
-use crate::simd::Lanes;
+use crate::simd::{Lanes, store4};
 use core::f32::consts::FRAC_PI_4;
 
 /// Cumulative integrals of an inclination, from the lower pole inwards and from the upper pole inwards.
@@ -105,6 +104,12 @@ pub(super) struct BandCdf<L: Lanes, const N: usize> {
     pub(super) offset_above: [L::Stored; 4],
     pub(super) below: [L; 3],
     pub(super) area: [L; 3],
+}
+
+/// Stores the numbers of R, TT and TRT, and for the glints that of TRT again.
+#[inline(always)]
+pub(super) fn shared4<L: Lanes>([r, tt, trt]: [L; 3]) -> [L::Stored; 4] {
+    store4([r, tt, trt, trt])
 }
 
 /// Integrates over all bands, from both poles to the middle.

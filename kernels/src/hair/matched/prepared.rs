@@ -1,7 +1,7 @@
 //! Constants of a matched sampler per material and direction.
 
 use super::MatchedBell;
-use super::band_cdf::integrate_bands;
+use super::band_cdf::{integrate_bands, shared4};
 use super::bands::bands;
 use super::hemispheres::Hemispheres;
 use super::material::{MatchedMaterial, extent};
@@ -167,12 +167,6 @@ fn by_channel<L: Lanes, C: Broadcast<L>>(size: [L; 4], intensity: &[C; 12]) -> [
         c += 1;
     }
     [sum[0].sqrt(), sum[1].sqrt(), sum[2].sqrt(), sum[3].sqrt()]
-}
-
-/// Stores the numbers of R, TT and TRT, and for the glints that of TRT again.
-#[inline(always)]
-pub(super) fn shared4<L: Lanes>([r, tt, trt]: [L; 3]) -> [L::Stored; 4] {
-    store4([r, tt, trt, trt])
 }
 
 impl<C, const N: usize> MatchedPrepared<C, N> {
