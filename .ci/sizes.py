@@ -54,7 +54,7 @@ def entry(name):
     found = re.search(r"dispatch::(rows|eights)_(avx\w+|portable)::<.*kernels::(\w+)>, \d+, \d+>$", name)
     if found and found[3] in ROWS:
         return ROWS[found[3]] + ("-eights" if found[1] == "eights" else ""), model, found[2]
-    found = re.search(r"dispatch::(rows|eights|run)_(avx\w+|portable)::<hairis::handle::kernels::(\w+)<.*>(?:, \d+, \d+)?>$", name)
+    found = re.search(r"dispatch::(rows|eights|run)_(avx\w+|portable)::<hairis::resample::kernels::(\w+)<.*>(?:, \d+, \d+)?>$", name)
     if found and found[3] in OF_MODEL:
         return OF_MODEL[found[3]] + ("-eights" if found[1] == "eights" else ""), model, found[2]
     found = re.search(r"dispatch::run_(avx\w+)::<hairis::handle::kernels::(\w+)<.*?, (f32|wide::[\w:]+)(?:, .*)?>>$", name)

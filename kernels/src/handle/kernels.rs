@@ -1,7 +1,6 @@
 //! Functions of a model as kernels of the vector layer, over packets of eight lanes and over rows of columns.
 
 use crate::model::{Eval, Eval8, Hit8, LobeEval8, Model, Sample8, SampleLanes};
-use crate::resample::{Weighed8, Weighing};
 use crate::simd::{Broadcast, Kernel, Lanes, Row, Scalar, Vec3x, fresh_lanes3, store3};
 use crate::{Bsdf8, Hit, PerLobe, Vec3x8};
 use core::marker::PhantomData;
@@ -102,7 +101,7 @@ impl<M: Model> Kernel for Albedo<'_, M> {
 
 /// Row of a batch: the columns `K` of one shading point.
 pub(crate) struct AtBsdf<'a, M: Model, K> {
-    prepared: &'a M::Prepared<f32>,
+    pub(crate) prepared: &'a M::Prepared<f32>,
     columns: PhantomData<K>,
 }
 
@@ -341,116 +340,5 @@ impl<M: Model, K: HitRow<M, I, N>, const I: usize, const N: usize> Kernel
     #[inline(always)]
     fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; N] {
         store_lanes(K::row::<L, f32x8>(self.material, lanes_of(self.input)))
-    }
-}
-
-/// Columns of the BSDF's candidates: the directions of samples, 0 where a sample was discarded.
-pub(crate) struct Proposed;
-impl<M: Model> Row<3, 3> for AtBsdf<'_, M, Proposed> {
-    #[inline(always)]
-    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 3] {
-        proposed(M::sample::<L, f32>(self.prepared, xi))
-    }
-}
-
-/// Returns the direction of a sample, or 0 if the sample was discarded.
-#[inline(always)]
-fn proposed<L: Lanes>(sample: SampleLanes<L>) -> [L; 3] {
-    let kept = L::splat(0.0).lt(sample.pdf);
-    [
-        L::keep(kept, sample.wi.x),
-        L::keep(kept, sample.wi.y),
-        L::keep(kept, sample.wi.z),
-    ]
-}
-
-/// Columns of the contributions and weights of candidates.
-#[derive(Clone, Copy)]
-pub(crate) struct Weighs<'a, M: Model> {
-    at: AtBsdf<'a, M, ValuePdf>,
-    weighing: Weighing,
-}
-
-impl<'a, M: Model> Weighs<'a, M> {
-    #[inline(always)]
-    pub(crate) fn new(prepared: &'a M::Prepared<f32>, weighing: Weighing) -> Self {
-        Self {
-            at: AtBsdf::new(prepared),
-            weighing,
-        }
-    }
-}
-
-impl<M: Model> Row<7, 4> for Weighs<'_, M> {
-    #[inline(always)]
-    fn row<L: Lanes>(self, [x, y, z, r, g, b, pdf_light]: [L; 7]) -> [L; 4] {
-        weighed::<M, L, f32>(
-            self.at.prepared,
-            self.weighing,
-            Vec3x::new(x, y, z),
-            [r, g, b],
-            pdf_light,
-        )
-    }
-}
-
-#[inline(always)]
-fn weighed<M: Model, L: Lanes, C: Broadcast<L>>(
-    prepared: &M::Prepared<C>,
-    weighing: Weighing,
-    wi: Vec3x<L>,
-    radiance: [L; 3],
-    pdf_light: L,
-) -> [L; 4] {
-    let cos_theta_i = wi.cos_theta();
-    let eval = M::eval::<L, C>(prepared, wi);
-    weighing.weigh(eval.value, eval.pdf, cos_theta_i, radiance, pdf_light)
-}
-
-/// Kernel that draws a candidate of the BSDF for each of eight hits.
-pub(crate) struct ProposalsOf<'a, M: Model> {
-    pub(crate) prepared: &'a M::Prepared<f32x8>,
-    pub(crate) xi: &'a [f32x8; 3],
-}
-
-impl<M: Model> Kernel for ProposalsOf<'_, M> {
-    type Output = Vec3x8;
-
-    #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Vec3x8 {
-        let [x, y, z] = store3(proposed(M::sample::<L, f32x8>(
-            self.prepared,
-            fresh_lanes3(self.xi),
-        )));
-        Vec3x::new(x, y, z)
-    }
-}
-
-/// Kernel of the contribution and the weight of a candidate for each of eight hits.
-pub(crate) struct WeighOf<'a, M: Model> {
-    pub(crate) prepared: &'a M::Prepared<f32x8>,
-    pub(crate) wi: &'a Vec3x8,
-    pub(crate) radiance: &'a [f32x8; 3],
-    pub(crate) pdf_light: &'a f32x8,
-    pub(crate) weighing: Weighing,
-}
-
-impl<M: Model> Kernel for WeighOf<'_, M> {
-    type Output = Weighed8;
-
-    #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Weighed8 {
-        let (wi, light) = (Vec3x::load_fresh(self.wi), self.pdf_light.fresh_lanes());
-        let [r, g, b, weight] = weighed::<M, L, f32x8>(
-            self.prepared,
-            self.weighing,
-            wi,
-            fresh_lanes3(self.radiance),
-            light,
-        );
-        Weighed8 {
-            contribution: store3([r, g, b]),
-            weight: weight.store(),
-        }
     }
 }
