@@ -56,6 +56,7 @@ pub(crate) mod pair;
 pub(crate) mod portable;
 mod scalar;
 pub(crate) mod schedule;
+pub(crate) mod storage;
 pub(crate) mod table;
 #[cfg(feature = "trace")]
 pub mod trace;

@@ -8,7 +8,8 @@ mod fit;
 use super::albedo::channels;
 use super::view::{HairLobes, HairView};
 use crate::model::Bell;
-use crate::simd::table::{ENTRIES, NUMBERS, Table};
+use crate::simd::storage::{ENTRIES, NUMBERS};
+use crate::simd::table::Table;
 use crate::simd::{Broadcast, Choice, Lanes, Scalar, f32x8, lanes3, store3};
 
 /// Number of pieces on each side of the normal plane; the table has entries for both sides.
@@ -72,7 +73,7 @@ pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
     // size.
     macro_rules! four {
         ($four:literal) => {
-            C::look_up_four(&fit.pieces, piece, upper, $four)
+            C::look_up_four(&fit.pieces.0, piece, upper, $four)
         };
     }
     let [r, g, b, next] = four!(0);

@@ -14,7 +14,7 @@ use super::lanes::{
     sealed::Sealed,
 };
 use super::schedule::Schedule;
-use super::table::Entries;
+use super::storage::Entries;
 use core::arch::asm;
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;

@@ -14,7 +14,7 @@ use super::lanes::{
     difference_fused, sealed::Sealed,
 };
 use super::schedule::Schedule;
-use super::table::Entries;
+use super::storage::Entries;
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
 #[cfg(target_arch = "x86_64")]

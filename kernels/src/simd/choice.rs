@@ -1,10 +1,21 @@
 //! Choice of one of four entries per lane: by bounds that a number is compared with, and from tables.
 
-use super::lanes::{Broadcast, Lanes, lanes4};
-use super::table::Shared;
+use super::storage::Shared;
+
+/// Part of [`Lanes`](super::Lanes) that choices are made by. All lanes have it, and other crates cannot name it.
+pub trait Select: Copy {
+    /// One truth value per lane.
+    type Mask: Copy;
+    /// An index from 0 to 3 per lane.
+    type Index;
+    /// Repeats a number in every lane.
+    fn splat(x: f32) -> Self;
+    /// Returns `yes` where the mask is set and `no` elsewhere.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+}
 
 /// An index from 0 to 3 per lane of `L`.
-pub trait Choice<L: Lanes<Index = Self>>: Copy {
+pub trait Choice<L: Select<Index = Self>>: Copy {
     /// Counts the first `count` of the ascending `bounds` that are at most `x`.
     fn search(x: L, bounds: [L; 3], count: usize) -> Self;
     /// Returns the masks of the lanes whose index is at least 1, 2 and 3.
@@ -38,7 +49,12 @@ pub trait Choice<L: Lanes<Index = Self>>: Copy {
     /// Returns the entry like [`choose`](Self::choose), of numbers that all lanes share.
     #[inline(always)]
     fn look_up(self, table: &[f32; 4]) -> L {
-        self.choose(lanes4(table))
+        self.choose([
+            L::splat(table[0]),
+            L::splat(table[1]),
+            L::splat(table[2]),
+            L::splat(table[3]),
+        ])
     }
     /// Returns, for each lane, the entry at the lane's index, which counts 4 more where the mask is set.
     #[doc(hidden)]
@@ -63,12 +79,12 @@ pub trait Choice<L: Lanes<Index = Self>>: Copy {
     /// Returns the entry like [`look_up`](Self::look_up), of a table whose last two entries are equal.
     #[inline(always)]
     fn look_up_three(self, table: &[f32; 4]) -> L {
-        self.choose_three([table[0].lanes(), table[1].lanes(), table[2].lanes()])
+        self.choose_three([L::splat(table[0]), L::splat(table[1]), L::splat(table[2])])
     }
     /// Returns the entry like [`choose_half`](Self::choose_half), of numbers that all lanes share.
     #[inline(always)]
     fn look_up_half(self, table: &[f32; 2]) -> L {
-        self.choose_half([table[0].lanes(), table[1].lanes()])
+        self.choose_half([L::splat(table[0]), L::splat(table[1])])
     }
 }
 

@@ -8,9 +8,9 @@
 //! Comparisons are false for NaN. `min` and `max` return their second operand when either is NaN,
 //! as the machine does, so that one `min` at the end of a model turns a NaN into its bound.
 
-use super::choice::Choice;
+use super::choice::{Choice, Select};
 use super::schedule::Schedule;
-use super::table::{NUMBERS, Storage, Table};
+use super::storage::{NUMBERS, Storage};
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 use wide::{f32x8, i32x8};
@@ -22,7 +22,7 @@ pub(crate) mod sealed {
 
 /// Entry of a struct of lanes: one number, or one number per lane. Sealed.
 pub trait Scalar: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
-    /// Storage form of a [`Table`] of this type.
+    /// Storage form of a [`Table`](super::table::Table) of this type.
     #[doc(hidden)]
     type Table: Storage<Self>;
 }
@@ -150,6 +150,19 @@ pub trait Lanes:
     }
 }
 
+impl<L: Lanes> Select for L {
+    type Mask = L::Mask;
+    type Index = L::Index;
+    #[inline(always)]
+    fn splat(x: f32) -> L {
+        <L as Lanes>::splat(x)
+    }
+    #[inline(always)]
+    fn select(mask: L::Mask, yes: L, no: L) -> L {
+        <L as Lanes>::select(mask, yes, no)
+    }
+}
+
 /// Storage of lanes: one number for all lanes, or one number per lane.
 ///
 /// A model reads its constants through this trait, so that one source serves eight directions at one shading point
@@ -172,8 +185,8 @@ pub trait Broadcast<L: Lanes>: Scalar {
     /// [`Choice::look_up_four`].
     #[doc(hidden)]
     #[inline(always)]
-    fn look_up_four(table: &Table<Self>, index: L::Index, upper: L::Mask, four: usize) -> [L; 4] {
-        let [a, b, c, d, e, f, g, h] = &table.0.entries();
+    fn look_up_four(table: &Self::Table, index: L::Index, upper: L::Mask, four: usize) -> [L; 4] {
+        let [a, b, c, d, e, f, g, h] = &table.entries();
         let mut found = [L::splat(0.0); 4];
         let mut i = 0;
         while i < 4 && 4 * four + i < NUMBERS {
@@ -208,8 +221,8 @@ impl<L: Lanes> Broadcast<L> for f32 {
         index.look_up(table)
     }
     #[inline(always)]
-    fn look_up_four(table: &Table<Self>, index: L::Index, upper: L::Mask, four: usize) -> [L; 4] {
-        index.look_up_four(upper, &table.0, four)
+    fn look_up_four(table: &Self::Table, index: L::Index, upper: L::Mask, four: usize) -> [L; 4] {
+        index.look_up_four(upper, table, four)
     }
     #[inline(always)]
     fn look_up_three(table: &[Self; 4], index: L::Index) -> L {
@@ -231,7 +244,7 @@ impl<L: Lanes<Stored = f32x8>> Broadcast<L> for f32x8 {
         L::load_fresh(self)
     }
     #[inline(always)]
-    fn look_up_four(table: &Table<Self>, index: L::Index, upper: L::Mask, four: usize) -> [L; 4] {
+    fn look_up_four(table: &Self::Table, index: L::Index, upper: L::Mask, four: usize) -> [L; 4] {
         // Through numbers, because with masks and integers, in as many instructions, a packet of eight materials took a twentieth
         // longer: LLVM then computes the parts of the index last, and nothing is left to do meanwhile.
         let offset = L::select(upper, L::splat(4.0), L::splat(0.0));
@@ -239,7 +252,7 @@ impl<L: Lanes<Stored = f32x8>> Broadcast<L> for f32x8 {
         const SEVEN: i32x8 = i32x8::new([7; 8]);
         let number = (index.to_number() + offset).store().fast_trunc_int() & SEVEN;
         let [i, j, k, l, m, n, o, p] = number.to_array();
-        let [a, b, c, d, e, f, g, h] = &table.0;
+        let [a, b, c, d, e, f, g, h] = table;
         L::transpose([
             a.four(i, four),
             b.four(j, four),

@@ -8,7 +8,7 @@
 use super::choice::Choice;
 use super::lanes::{Broadcast, Lanes, Packet, Scalar, by_splat, sealed::Sealed};
 use super::schedule::Schedule;
-use super::table::{Entries, Shared};
+use super::storage::{Entries, Shared};
 use core::ops::{Add, Mul, Neg, Sub};
 
 /// Two packets, or two equal steps of one packet, as lanes: each instruction for one is followed by the same instruction for the

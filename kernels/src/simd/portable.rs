@@ -14,7 +14,7 @@ use super::lanes::{
     difference_fused, difference_split, sealed::Sealed,
 };
 use super::schedule::Schedule;
-use super::table::{Entries, Rows, Shared};
+use super::storage::{Entries, Rows, Shared};
 use core::ops::{Add, Mul, Neg, Sub};
 use wide::{f32x4, f32x8, u32x8};
 

@@ -16,7 +16,7 @@ use super::lanes::{
     sealed::Sealed,
 };
 use super::schedule::Schedule;
-use super::table::Shared;
+use super::storage::Shared;
 
 impl Sealed for f32 {}
 impl Scalar for f32 {

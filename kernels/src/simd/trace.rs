@@ -10,7 +10,7 @@ use super::lanes::{
     difference_split, sealed::Sealed,
 };
 use super::schedule::Schedule;
-use super::table::Entries;
+use super::storage::Entries;
 use core::fmt;
 use core::marker::PhantomData;
 use core::ops::{Add, Mul, Neg, Sub};
