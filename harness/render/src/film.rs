@@ -1,6 +1,6 @@
 //! Film of a picture, which holds the sums over samples, tile by tile.
 
-use crate::transport::Profile;
+use crate::transport::profile::Profile;
 use glam::Vec3;
 use hairis_instruments::light::luminance;
 use hairis_instruments::sequence::mix;
