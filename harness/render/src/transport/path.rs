@@ -14,8 +14,6 @@ use hairis_instruments::direction::cosine;
 
 /// Number of scatterings before paths may end at random.
 const FIRST_ROULETTE: u32 = 4;
-/// Largest number of paths into which a camera ray is split.
-pub(super) const MOST_PARTS: u32 = 64;
 
 /// Follows all paths of a wave to their ends, or to the depth.
 pub(super) fn run(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave) {
@@ -341,7 +339,7 @@ pub(super) fn leave(
 ///   probability would multiply throughputs without end, with infinite variance where fewer paths leave
 ///   hair per scattering than the cap ends;
 /// - 2 or more continues as `floor(t)` paths of equal parts, as far as the camera ray's
-///   [`MOST_PARTS`] allow. Weights of a sampler are 1 on average, but over scatterings without end
+///   [`MOST_PARTS`](super::wave::MOST_PARTS) allow. Weights of a sampler are 1 on average, but over scatterings without end
 ///   their products have infinite variance.
 ///
 /// Both rules are relative to the camera ray and not to the scattering before, which would keep what

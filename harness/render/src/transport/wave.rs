@@ -1,11 +1,13 @@
 //! Paths of a tile that are followed side by side.
 
-use super::path::MOST_PARTS;
 use super::{Settings, key};
 use crate::numbers::Numbers;
 use crate::scene::{Met, Scene};
 use crate::tree::{self, Ray};
 use glam::Vec3;
+
+/// Largest number of paths into which a camera ray is split.
+pub(super) const MOST_PARTS: u32 = 64;
 
 /// Path on its way through the scene.
 #[derive(Clone, Copy, Debug)]
