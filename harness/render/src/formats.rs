@@ -14,6 +14,7 @@ mod monohair;
 mod obj;
 mod ply;
 mod ply_strands;
+mod polygon;
 mod raw;
 mod text;
 mod tressfx;

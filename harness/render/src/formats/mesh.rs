@@ -3,10 +3,10 @@
 use super::bytes::Bytes;
 use super::ply::{self, Ply};
 use super::ply_strands::Vertices;
+use super::polygon::{Parts, fan};
 use super::{ImportError, Problem, Up, Wrong, check_option, obj, read};
 use crate::geometry::Mesh;
 use crate::part::digest;
-use glam::Vec3;
 use std::path::Path;
 
 /// Options by which the mesh of a head is read.
@@ -56,9 +56,6 @@ pub fn import_head_bytes(path: &Path, data: &[u8], options: &Head) -> Result<Mes
     Mesh::new(places, triangles).map_err(|problem| refuse(None, Problem::Text(problem)))
 }
 
-/// Positions, and triangles as indices into them.
-pub(super) type Parts = (Vec<Vec3>, Vec<[u32; 3]>);
-
 fn of_ply(bytes: Bytes<'_>) -> Result<Parts, Wrong> {
     let ply = Ply::new(bytes)?;
     let (vertex, columns) = Vertices::new(&ply)?;
@@ -87,10 +84,4 @@ fn of_ply(bytes: Bytes<'_>) -> Result<Parts, Wrong> {
         Ok(())
     })?;
     Ok((places, triangles))
-}
-
-/// Splits a polygon into triangles that share its first corner.
-pub(super) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
-    let pairs = corners.windows(2).skip(1);
-    pairs.map(|pair| [corners[0], pair[0], pair[1]])
 }

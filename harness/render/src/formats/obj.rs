@@ -4,7 +4,7 @@
 //! Own code, because `tobj` rejects meshes for normals and colours, which are not used, and names no line.
 
 use super::bytes::{Bytes, position};
-use super::mesh::{Parts, fan};
+use super::polygon::{Parts, fan};
 use super::text::{Lines, data, excerpt};
 use super::{Problem, Wrong};
 use glam::Vec3;
