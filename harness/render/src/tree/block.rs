@@ -1,6 +1,5 @@
 //! Blocks of eight segments, and the test of a ray against them.
 
-use super::build::slack;
 use super::ray::{Hit, Meet, Ray, Spread};
 use super::split::Primitive;
 use crate::geometry::{Bounds, Strands};
@@ -37,6 +36,15 @@ pub(super) trait Leaf {
 
     /// Completes a hit of which distance and place are known.
     fn hit(&self, lane: usize, ray: &Ray, t: f32, s: f32) -> Self::Hit;
+}
+
+/// Returns the slack of boxes against rounding, for rays that start within a few times the size of the scene.
+pub(super) fn slack(bounds: &Bounds) -> f32 {
+    if bounds.is_empty() {
+        0.0
+    } else {
+        bounds.lo.abs().max(bounds.hi.abs()).max_element() / (1 << 21) as f32
+    }
 }
 
 /// Returns the boxes of all segments. A ray that passes an end within its radius meets the segment, so

@@ -39,15 +39,6 @@ pub(super) fn build<B: Send>(
     (nodes, ranges.into_par_iter().map(block).collect())
 }
 
-/// Returns the slack of boxes against rounding, for rays that start within a few times the size of the scene.
-pub(super) fn slack(bounds: &Bounds) -> f32 {
-    if bounds.is_empty() {
-        0.0
-    } else {
-        bounds.lo.abs().max(bounds.hi.abs()).max_element() / (1 << 21) as f32
-    }
-}
-
 /// Drafts the tree over `primitives`, and changes their order. `first` is the index of the first of them among all.
 fn draft(primitives: &mut [Primitive], extent: Extent, first: usize, depth: usize) -> Draft {
     if primitives.len() <= 8 {

@@ -1,8 +1,8 @@
 //! Blocks of eight triangles, and the test of a ray against them.
 
 use super::Boxes;
-use super::block::{Leaf, bits};
-use super::build::{build, slack};
+use super::block::{Leaf, bits, slack};
+use super::build::build;
 use super::ray::{Ray, Spread};
 use super::split::Primitive;
 use crate::geometry::{Bounds, Mesh};
