@@ -5,9 +5,6 @@ mod merge;
 mod place;
 mod render;
 
-pub(crate) use place::environment;
-pub(crate) use render::picture_size;
-
 use crate::args::Command;
 use hairis_instruments::error::Error;
 use hairis_instruments::program::check_threads;

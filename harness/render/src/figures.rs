@@ -12,7 +12,7 @@ pub mod store;
 pub mod verdict;
 
 use crate::args::Figures;
-use crate::cmd::environment;
+use crate::environment::environment;
 use crate::hair::Choice;
 use crate::scenes::Name;
 use hairis_instruments::error::Error;

@@ -1,6 +1,6 @@
 //! Layers and attributes of the file of a picture.
 
-use crate::cmd::picture_size;
+use crate::args::Size;
 use crate::film::Film;
 use crate::scene::{Met, Scene};
 use crate::transport::{Stop, each_until};
@@ -91,6 +91,14 @@ impl Beside {
             frame: picture_size(run).map(|size| ([crop.x, crop.y], size)),
         }
     }
+}
+
+/// Parses the width and height of the whole picture from the description of a run.
+fn picture_size(run: &str) -> Option<[u32; 2]> {
+    let size = run
+        .split_whitespace()
+        .find_map(|word| word.strip_prefix("size="))?;
+    size.parse().ok().map(|Size(size)| size)
 }
 
 /// Returns the command line of this process, as Bash reads it. Paths are as they were given.

@@ -15,6 +15,7 @@
 pub mod args;
 pub mod camera;
 pub mod cmd;
+mod environment;
 pub mod figures;
 pub mod film;
 pub mod fit;

@@ -1,6 +1,7 @@
 //! Scene that the flags describe: hair, head, light and camera.
 
 use crate::args::{Looks, Place};
+use crate::environment::environment;
 use crate::formats::{self, Follow, Import, Imported, import, import_head};
 use crate::geometry::Strands;
 use crate::hair::{Choice, default_sampler};
@@ -124,15 +125,6 @@ pub(super) fn choices(flags: &Looks, place: &Place) -> Result<Vec<Choice>, Error
         .into_iter()
         .map(|choice| choice.set(&flags.set))
         .collect()
-}
-
-/// Reads an environment map, and logs what is odd about it.
-pub(crate) fn environment(path: &Path, layer: Option<&str>) -> Result<Environment, Error> {
-    let map = Environment::load_layer(path, layer)?;
-    for note in map.notes() {
-        say(&note);
-    }
-    Ok(map)
 }
 
 /// Reads hair with the digest of its file, and logs what is odd about it.

@@ -18,7 +18,6 @@ use crate::scenes::Name;
 use crate::transport::{self, CutOff, Integrator, Settings};
 use core::time::Duration;
 use description::describe;
-pub(crate) use description::picture_size;
 use hairis_instruments::error::Error;
 use hairis_instruments::files::{whole, writable};
 use hairis_instruments::interrupt::Interrupt;

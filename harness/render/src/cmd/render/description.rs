@@ -97,11 +97,3 @@ pub(super) fn describe(
     ];
     words.join(" ")
 }
-
-/// Parses the width and height of the whole picture from the line that [`describe`] returns.
-pub(crate) fn picture_size(run: &str) -> Option<[u32; 2]> {
-    let size = run
-        .split_whitespace()
-        .find_map(|word| word.strip_prefix("size="))?;
-    size.parse().ok().map(|Size(size)| size)
-}
