@@ -5,7 +5,7 @@ pub(crate) mod random;
 mod sheet;
 
 use super::spline::{Basis, Flattening, Spline};
-use super::{GeometryError, Strands};
+use super::strands::{GeometryError, Strands};
 use glam::Vec3;
 use rayon::prelude::*;
 

@@ -1,6 +1,6 @@
 //! Meshes of triangles, on which hair grows.
 
-use super::Bounds;
+use super::bounds::Bounds;
 use glam::{Quat, Vec3};
 
 /// Largest magnitude of a coordinate, in centimetres.

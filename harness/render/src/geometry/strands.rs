@@ -1,6 +1,6 @@
 //! Strands of hair, as polylines with a radius per node.
 
-use super::Bounds;
+use super::bounds::Bounds;
 use core::fmt;
 use core::ops::Range;
 use glam::Vec3;
