@@ -1,6 +1,6 @@
 //! Checks of the answers of entry points, because the speed of a wrong kernel means nothing.
 
-use crate::Name;
+use crate::entries::name::Name;
 use crate::resample::{COUNTS, SKY_PDF};
 use crate::task::{Answer, Task};
 use glam::Vec3;
