@@ -2,6 +2,7 @@
 
 mod bsdf;
 mod columns;
+mod conserving;
 mod dynamic;
 mod hits;
 pub(crate) mod kernels;

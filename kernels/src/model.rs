@@ -3,7 +3,7 @@
 //! Implement [`LobeModel`] for a model given by its lobes, [`Bell`] for another bell in the published model, and [`Model`] for
 //! one that computes several lobes together. Vectors are in [`simd`](crate::simd), and elementary functions in [`math`].
 
-mod conserving;
+pub(crate) mod conserving;
 mod direction;
 pub(crate) mod lobe;
 mod lobe_model;

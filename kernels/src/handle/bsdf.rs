@@ -2,9 +2,9 @@
 
 use super::kernels::{Albedo, EvalPdf, Lobes, SampleWi};
 use super::{handle_impls, level_methods};
-use crate::model::{LobeEval, LobeEval8, Model};
+use crate::frame::Vec3x8;
+use crate::model::{Eval, Eval8, LobeEval, LobeEval8, LobeMask, Model, PerLobe, Sample, Sample8};
 use crate::simd::{LaneStruct, Level, Schedule, Vec3x, f32x8};
-use crate::{Eval, Eval8, LobeMask, PerLobe, Sample, Sample8, Vec3x8};
 
 /// BSDF at a hit: a material with its `wo` fixed. Evaluate and sample it any number of times, one direction or eight at a time.
 pub struct Bsdf<M: Model> {

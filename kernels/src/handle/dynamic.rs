@@ -6,9 +6,9 @@
 
 use super::{Bsdf, Bsdf8};
 use crate::columns::{EvalColumns, LengthError, SampleColumns};
-use crate::model::{LobeEval, LobeEval8, Model};
+use crate::frame::Vec3x8;
+use crate::model::{Eval, Eval8, LobeEval, LobeEval8, LobeMask, Model, PerLobe, Sample, Sample8};
 use crate::simd::{Level, Vec3x, f32x8};
-use crate::{Eval, Eval8, LobeMask, PerLobe, Sample, Sample8, Vec3x8};
 use core::fmt::Debug;
 use glam::Vec3;
 

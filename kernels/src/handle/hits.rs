@@ -1,16 +1,19 @@
 //! Calls on columns of hits, in which each entry has a hit and a direction of its own.
 
+mod kernels;
+
 use crate::columns::{
     EvalColumns, HitColumns, LengthError, SAMPLE, SAMPLE_OF_BOTH, SampleColumns, VALUE_PDF, WI, XI,
     check_length, in_groups,
 };
-use crate::handle::kernels::{AtHits, EightHits, HitEvals, HitEvalsSamples, HitRow, HitSamples};
-use crate::model::Model;
+use crate::handle::bsdf::Bsdf8;
+use crate::handle::material::{Material, Material8};
+use crate::model::{Hit, Hit8, Model};
 use crate::simd::columns::copy_few;
 use crate::simd::dispatch::clean_upper_halves;
 use crate::simd::{Level, Vec3x};
-use crate::{Bsdf8, Hit, Hit8, Material, Material8};
 use core::fmt;
+use kernels::{AtHits, EightHits, HitEvals, HitEvalsSamples, HitRow, HitSamples};
 use wide::f32x8;
 
 /// Materials of a call on columns: a table, and for each hit the index of its material in the table.

@@ -3,10 +3,9 @@
 use super::bsdf::{Bsdf, Bsdf8, unit};
 use super::kernels::Prepare;
 use super::{handle_impls, level_methods};
-use crate::model::Model;
+use crate::model::{Eval, Hit, Hit8, Model, PerLobe, Sample};
 use crate::simd::dispatch::clean_upper_halves;
 use crate::simd::{LaneStruct, Level, Schedule, Vec3x, f32x8};
-use crate::{Eval, Hit, Hit8, PerLobe, Sample};
 use core::f32::consts::FRAC_PI_2;
 use core::mem::MaybeUninit;
 use glam::Vec3;

@@ -4,10 +4,9 @@ mod mixture;
 
 use mixture::Mixture;
 
-use crate::model::lobe::times;
+use crate::model::lobe::{Lobe, PerLobe, times};
 use crate::model::{Direction, Eval, Hit, LobeEval, LobeMask, Model, SampleLanes};
 use crate::simd::{Broadcast, Choice, LaneStruct, Lanes, Scalar, Vec3x, lanes3};
-use crate::{Lobe, PerLobe};
 use wide::f32x8;
 
 /// Scattering model defined by its lobes: the trait to implement for a new model.
