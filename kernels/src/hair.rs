@@ -26,10 +26,9 @@ pub(crate) use sampling::{FoldedXi, direction_from_angles};
 pub(crate) use view::prepare as prepare_view;
 
 use crate::model::lobe::times;
-use crate::model::{Eval, Hit, LobeEval, Model, Precision, SampleLanes};
-use crate::params::HairDesc;
+use crate::model::{Eval, Hit, LobeEval, LobeMask, Model, PerLobe, Precision, SampleLanes};
+use crate::params::{HairDesc, HairParams};
 use crate::simd::{Broadcast, Lanes, Scalar, Vec3x, lanes4};
-use crate::{HairParams, LobeMask, PerLobe};
 
 /// Cosine of the inclination below which a direction lies on the fibre's axis: there value and density are 0, and a sample is
 /// discarded (section 3.3 of the paper).

@@ -26,12 +26,13 @@
 //!   1e30, so that no sum overflows.
 
 use crate::columns::{LengthError, VALUE_PDF, WI, XI, check_columns};
+use crate::frame::Vec3x8;
 use crate::handle::kernels::AtBsdf;
+use crate::handle::{Bsdf, Bsdf8};
 use crate::model::Model;
 use crate::simd::columns::Columns;
 use crate::simd::dispatch::clean_upper_halves;
 use crate::simd::{Lanes, Level, Row, Vec3x};
-use crate::{Bsdf, Bsdf8, Vec3x8};
 use kernels::{ProposalsOf, Proposed, WeighOf, Weighs};
 use weighing::Weighing;
 use wide::f32x8;

@@ -1,6 +1,6 @@
 //! Materials from files, each under a name of its own.
 
-use crate::MaterialSpec;
+use crate::material::MaterialSpec;
 use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, Read as _};

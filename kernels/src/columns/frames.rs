@@ -1,8 +1,8 @@
 //! Frames of many hits, stored by column.
 
 use super::{LengthError, check_length, check_lengths3};
+use crate::frame::{FiberFrame8, Vec3x8};
 use crate::simd::columns::copy_few;
-use crate::{FiberFrame8, Vec3x8};
 use glam::Vec3;
 use wide::f32x8;
 

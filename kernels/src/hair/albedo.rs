@@ -1,10 +1,9 @@
 //! Directional albedo of the published model, by quadrature over each bell.
 
 use super::HairView;
-use crate::PerLobe;
 use crate::hair::quadrature::{COARSE, GRADED};
-use crate::model::Bell;
 use crate::model::math::{FRAC_PI_2_LOW, half_atan2, sin_cos_half_turn};
+use crate::model::{Bell, PerLobe};
 use crate::simd::{Broadcast, Lanes, lanes3};
 use core::f32::consts::FRAC_PI_2;
 

@@ -17,12 +17,11 @@ use crate::hair::{
     Angles, LobeTerms, albedo, finish_eval, finish_lobes, finish_sample, mix_densities,
 };
 use crate::model::lobe::times;
-use crate::model::{Eval, Hit, LobeEval, Model, Precision, SampleLanes};
-use crate::params::HairDesc;
+use crate::model::{Eval, Hit, LobeEval, LobeMask, Model, PerLobe, Precision, SampleLanes};
+use crate::params::{HairDesc, HairParams};
 use crate::simd::pair::Pair;
 use crate::simd::portable::Unfused;
 use crate::simd::{Broadcast, Lanes, Scalar, Vec3x};
-use crate::{HairParams, LobeMask, PerLobe};
 
 /// The model of [`Published`](crate::Published), with the same parameters, values and albedo, but with a sampler of lower variance
 /// that follows the values more closely.

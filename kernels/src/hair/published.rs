@@ -1,10 +1,9 @@
 //! Constants of the published sampler: per material, and per material and direction (section 3.3 of the paper).
 
 use super::view::{self, HairLobes, HairView, intensities};
-use crate::LobeMask;
 use crate::hair::truncated::TruncatedCauchy;
 use crate::model::lobe::times;
-use crate::model::{Bell, Precision};
+use crate::model::{Bell, LobeMask, Precision};
 use crate::params::HairDesc;
 use crate::simd::{Broadcast, Lanes, Vec3x, lanes4, store4};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};

@@ -1,8 +1,7 @@
 //! Results for a direction and for a sample, computed from the lobe terms and the density.
 
 use super::{Angles, GRAZING, HairView, LobeTerms};
-use crate::PerLobe;
-use crate::model::{Eval, LobeEval, SampleLanes};
+use crate::model::{Eval, LobeEval, PerLobe, SampleLanes};
 use crate::simd::{Broadcast, Choice, Lanes, Vec3x, lanes3};
 
 /// Density below which a sample is discarded, because close to denormals its weight would have no digits.

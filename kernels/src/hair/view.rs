@@ -1,10 +1,9 @@
 //! Lobes of a material, and the view terms of a shading point, which all samplers of the published model share.
 
 use super::albedo::bell_area;
-use crate::LobeMask;
 use crate::model::lobe::times;
 use crate::model::math::{FRAC_PI_2_LOW, half_atan2_parts};
-use crate::model::{Bell, Precision};
+use crate::model::{Bell, LobeMask, Precision};
 use crate::params::HairDesc;
 use crate::simd::{Broadcast, Lanes, Vec3x, lanes3, store3, store4};
 use core::f32::consts::PI;

@@ -1,7 +1,7 @@
 //! Hair described in an artist's terms: colour, intensity, position and width of each highlight, in degrees.
 
 use super::{HairDesc, HairParams, MAX_WIDTH, Rule};
-use crate::ParamError;
+use crate::params::error::ParamError;
 use core::f32::consts::{FRAC_PI_2, PI};
 
 const RAD_PER_DEG: f32 = PI / 180.0;

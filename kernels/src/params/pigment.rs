@@ -1,7 +1,7 @@
 //! Colours of pigment: the share of the light that a fibre of some melanin or absorption transmits.
 
 use super::{ArtistControls, Rule};
-use crate::ParamError;
+use crate::params::error::ParamError;
 
 /// Mean length of a passage through the fibre, in radii: `2 mean(cos gamma_t)` over offsets `h` across the fibre, with
 /// `sin gamma_t = h / eta` and an index of refraction of 1.55 at normal incidence, `sqrt(1 - 1/eta^2) + eta asin(1 / eta)`.

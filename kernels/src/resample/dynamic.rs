@@ -1,8 +1,8 @@
 //! Resampling with a BSDF of a type that is known, or chosen at run time.
 
 use super::{CandidateColumns, Counts, Partition, WeightColumns, candidate_columns, weigh_evals};
-use crate::Bsdf;
 use crate::columns::{EvalColumns, LengthError, SampleColumns, WI, XI, check_lengths3};
+use crate::handle::Bsdf;
 use crate::model::{DynBsdf, Model};
 
 /// BSDF that proposes and weighs candidates for a [`Pool`](super::Pool).

@@ -1,7 +1,7 @@
 //! Kernels that draw a BSDF's candidates, and that weigh candidates.
 
 use super::weighing::{Weighed8, Weighing};
-use crate::Vec3x8;
+use crate::frame::Vec3x8;
 use crate::handle::kernels::{AtBsdf, ValuePdf};
 use crate::model::{Model, SampleLanes};
 use crate::simd::{Broadcast, Kernel, Lanes, Row, Vec3x, fresh_lanes3, store3};

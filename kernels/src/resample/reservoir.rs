@@ -1,7 +1,7 @@
 //! Reservoirs of eight hits, each of which keeps one of the candidates that are added to it.
 
 use super::Weighed8;
-use crate::Vec3x8;
+use crate::frame::Vec3x8;
 use crate::handle::level_methods;
 use crate::simd::lanes::{lanes3, store3};
 use crate::simd::{Broadcast, Kernel, Lanes, Level, Vec3x};

@@ -1,6 +1,6 @@
 //! Contributions and weights of candidates.
 
-use crate::Eval8;
+use crate::model::Eval8;
 use crate::simd::Lanes;
 use wide::f32x8;
 

@@ -1,6 +1,8 @@
 //! Handle of a model that is chosen at run time.
 
-use crate::{Differentiable, GradColumns, GradError, Gradients, Weights};
+use crate::columns::{GradColumns, GradError, Weights};
+use crate::generated::Differentiable;
+use crate::gradients::Gradients;
 use hairis::columns::HitColumns;
 use hairis::simd::Level;
 use hairis::{Gaussian, Matched, ParamError, Published};

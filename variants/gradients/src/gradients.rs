@@ -1,8 +1,7 @@
 //! Handle of a material whose model is known at compile time.
 
-use crate::columns::Call;
+use crate::columns::{Call, GradColumns, GradError, Weights};
 use crate::generated::{Differentiable, sealed};
-use crate::{GradColumns, GradError, Weights};
 use core::fmt;
 use hairis::ParamError;
 use hairis::columns::HitColumns;

@@ -1,7 +1,7 @@
 //! Derivatives by parameters, computed from the derivatives by the numbers of a material.
 
-use crate::Gradients;
 use crate::generated::Differentiable;
+use crate::gradients::Gradients;
 use hairis_variants::{Kind, Parameters, Values};
 
 impl<M: Differentiable> Gradients<M> {

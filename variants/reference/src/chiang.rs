@@ -5,8 +5,9 @@ mod bessel;
 mod cone;
 mod parameters;
 
+use crate::interface::{LobeAt, Reference, ReferenceSample};
+use crate::real::Real;
 use crate::steps::{Fixed, GRAZING, choose, finish_sample, fixed, inclination, mix, sum_to_one};
-use crate::{LobeAt, Real, Reference, ReferenceSample};
 use azimuth::Logistic;
 use cone::Cone;
 use hairis::{Lobe, PerLobe};

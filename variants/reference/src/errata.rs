@@ -3,7 +3,8 @@
 //! `kernels/ERRATA.md` lists the errata of Ou et al. 2012, and `variants/ERRATA.md` those of the second source. Tests show that the
 //! corrected formulas pass where these fail, and the claims of the harness measure how far these are off.
 
-use crate::{CauchyDensity, Real};
+use crate::published::CauchyDensity;
+use crate::real::Real;
 
 /// Makes the density of E1 of Ou et al., the longitudinal term in `theta_h`, whose constants A and B lack the half. The density is
 /// normalised on an interval twice as long as the interval of `theta_h`.

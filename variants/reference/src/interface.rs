@@ -1,6 +1,6 @@
 //! Interface of the formulas of every model.
 
-use crate::Real;
+use crate::real::Real;
 use core::fmt::Debug;
 use hairis::{Lobe, LobeMask, PerLobe};
 

@@ -1,7 +1,9 @@
 //! The model of Kajiya and Kay, formula by formula, in either precision.
 
+use crate::interface::{LobeAt, Reference, ReferenceSample};
+use crate::quadrature::integrate;
+use crate::real::Real;
 use crate::steps::{Fixed, GRAZING, choose, finish_sample, fixed, inclination, mix, sum_to_one};
-use crate::{LobeAt, Real, Reference, ReferenceSample, integrate};
 use hairis::{Lobe, PerLobe};
 use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc};
 

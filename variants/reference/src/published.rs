@@ -16,8 +16,9 @@ mod formulas;
 mod matched;
 mod sampler;
 
+use crate::interface::{LobeAt, Reference, ReferenceSample};
+use crate::real::Real;
 use crate::steps::{GRAZING, choose, mix_pdfs, shares};
-use crate::{LobeAt, Real, Reference, ReferenceSample};
 use hairis::params::HairDesc;
 use hairis::{Lobe, PerLobe};
 

@@ -1,6 +1,6 @@
 //! Integrals of smooth functions with one peak, for albedos without a closed form.
 
-use crate::Real;
+use crate::real::Real;
 
 /// Nodes and weights of the eight-point Gauss-Legendre rule on [-1, 1], of the half above 0.
 const RULE: [(f64, f64); 4] = [

@@ -1,9 +1,10 @@
 //! Formulas of the models of the registry.
 
-use crate::{
-    ChiangConstants, ChiangFormulas, ChiangReference, HairReference, KajiyaKayConstants,
-    KajiyaKayReference, MatchedReference, Real, Reference, Selection, Shape, cosine_power_integral,
-};
+use crate::chiang::{ChiangConstants, ChiangFormulas, ChiangReference, Selection};
+use crate::interface::Reference;
+use crate::kajiya_kay::{KajiyaKayConstants, KajiyaKayReference, cosine_power_integral};
+use crate::published::{HairReference, MatchedReference, Shape};
+use crate::real::Real;
 use core::f64::consts::{PI, TAU};
 use core::fmt::Debug;
 use hairis::params::HairDesc;

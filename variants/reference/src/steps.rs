@@ -1,6 +1,7 @@
 //! Steps that the formulas of several models share, in either precision.
 
-use crate::{LobeAt, Real, ReferenceSample};
+use crate::interface::{LobeAt, ReferenceSample};
+use crate::real::Real;
 use hairis::{Lobe, PerLobe};
 
 /// Inclination and azimuth of a fixed direction.

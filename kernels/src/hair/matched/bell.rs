@@ -1,6 +1,6 @@
 //! Bells whose distribution on an interval has a closed form: the extension point of the matched samplers.
 
-use crate::Gaussian;
+use crate::hair::bell::Gaussian;
 use crate::model::Bell;
 use crate::model::math::{normal_tail, normal_tail_inverse};
 use crate::simd::Lanes;

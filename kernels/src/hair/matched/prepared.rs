@@ -5,8 +5,8 @@ use super::band_cdf::{integrate_bands, shared4};
 use super::bands::bands;
 use super::hemispheres::Hemispheres;
 use super::material::{MatchedMaterial, extent};
-use crate::LobeMask;
 use crate::hair::{HairView, prepare_view, selection};
+use crate::model::LobeMask;
 use crate::model::lobe::times;
 use crate::simd::{Broadcast, Lanes, Spread, Vec3x, lanes3, lanes4, store3, store4};
 

@@ -1,6 +1,6 @@
 //! Azimuthal lobe: a logistic distribution cut to one turn.
 
-use crate::Real;
+use crate::real::Real;
 
 /// Logistic distribution of scale s on `[-pi, pi]`: Chiang et al. 2016, section 3.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Scaled modified Bessel function of the first kind and order 0.
 
-use crate::Real;
+use crate::real::Real;
 
 /// Computes the scaled modified Bessel function `exp(-x) I0(x)`, for `x >= 0`.
 ///

@@ -1,7 +1,7 @@
 //! Longitudinal lobe: a spherical Gaussian summed around the fibre.
 
 use super::bessel_i0_scaled;
-use crate::Real;
+use crate::real::Real;
 
 /// Cone of inclination `-theta'` about which light spreads with variance v: d'Eon et al. 2011.
 #[derive(Clone, Copy, Debug, PartialEq)]

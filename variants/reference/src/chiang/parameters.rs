@@ -1,6 +1,6 @@
 //! Formulas of widths, shifts and absorption, and the criterion for the choice of a lobe.
 
-use crate::Real;
+use crate::real::Real;
 use hairis::PerLobe;
 use hairis_variants::chiang::{ChiangDesc, Shifts};
 

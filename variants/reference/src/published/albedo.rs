@@ -1,7 +1,8 @@
 //! Directional albedos of the lobes of the published model, by quadrature.
 
 use super::{HairReference, colours};
-use crate::{Real, integrate};
+use crate::quadrature::integrate;
+use crate::real::Real;
 use hairis::{Lobe, PerLobe};
 
 /// Computes each albedo as the product of two integrals: `bell(theta_h - alpha) (cos theta_i / cos theta_d)^2` over `theta_i`, and N

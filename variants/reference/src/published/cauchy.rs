@@ -1,6 +1,6 @@
 //! Cauchy distribution on an interval, from which the published sampler draws.
 
-use crate::Real;
+use crate::real::Real;
 
 /// Cauchy density cut to `[lo, hi]` and normalised there, from which M, TT and one glint are sampled.
 ///

@@ -1,7 +1,7 @@
 //! Bell cut to an interval, from which the matched sampler draws.
 
 use super::Shape;
-use crate::Real;
+use crate::real::Real;
 
 /// Bell cut to an interval, with its cdf and the inverse of the cdf.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,7 +1,8 @@
 //! Shape of the bells, and the choice of a sampler at run time.
 
 use super::{HairReference, MatchedReference};
-use crate::{Real, Reference};
+use crate::interface::Reference;
+use crate::real::Real;
 use hairis::params::HairDesc;
 
 /// Bell that all lobes of a model are made of; its peak is 1, because the paper's energies hold only for unit peaks (ERRATA E4).

@@ -2,8 +2,9 @@
 
 use super::cut::Cut;
 use super::{Angles, HairReference, Shape};
+use crate::interface::{LobeAt, Reference, ReferenceSample};
+use crate::real::Real;
 use crate::steps::{choose, mix_pdfs, shares};
-use crate::{LobeAt, Real, Reference, ReferenceSample};
 use hairis::params::HairDesc;
 use hairis::{Lobe, LobeMask, PerLobe};
 

@@ -1,7 +1,7 @@
 //! The published sampler: sections 3.2.1 to 3.2.3 and appendices A to D.
 
 use super::{HairReference, cos_half};
-use crate::Real;
+use crate::real::Real;
 use hairis::Lobe;
 
 impl<T: Real> HairReference<T> {
