@@ -1,9 +1,11 @@
 //! Comparison of samplers: references, errors, and standard errors of errors.
 
+mod jackknife;
 mod rate;
 mod runs;
 
-pub use rate::{Reach, average, crossing, jackknife, reach, slope, slope_of};
+pub use jackknife::{average, jackknife};
+pub use rate::{Reach, crossing, reach, slope, slope_of};
 pub use runs::Runs;
 
 use crate::film::Picture;

@@ -1,6 +1,6 @@
 //! Pictures rendered with one sampler, and their errors.
 
-use super::rate::{average, jackknife};
+use super::jackknife::{average, jackknife};
 use super::{Errors, Measure, Reference};
 use crate::film::{Film, Picture};
 use crate::transport::Settings;
