@@ -32,8 +32,8 @@ pub use candidates::{LightBlocks, Lit, numbers};
 pub use equal_time::{EqualTime, PRICES_US};
 pub use measure::{Unoccluded, pose, unoccluded};
 pub use result::occluded;
-pub use result::{OneRay, PoolFigures, RayFigures, RayPose, RayRow, RaysResult};
-pub use run::{RaysConfig, check, rows, run};
+pub use result::{OneRay, PoolFigures, RayFigures, RayPose, RayRow};
+pub use run::{RaysConfig, RaysResult, check, rows, run};
 pub use subject::RaySubject;
 pub use times::{RayTimes, measure as measure_times};
 

@@ -1,24 +1,8 @@
 //! Figures as plain data, which reports print and JSON keeps.
 
-use super::{EqualTime, RayTimes, VISIBLE};
-use crate::efficiency::Check;
+use super::VISIBLE;
 use hairis_instruments::stats::Estimate;
 use serde::Serialize;
-
-/// Results about rays that are chosen from candidates.
-#[derive(Clone, Debug, Serialize)]
-pub struct RaysResult {
-    /// Number of pools of 32 + 32 candidates drawn per shading point; smaller pools are parts of them.
-    pub pools: usize,
-    /// Variances by model, sampler and light, which depend on the seed alone.
-    pub rows: Vec<RayRow>,
-    /// Times of this machine, in the order of the rows.
-    pub times: Vec<RayTimes>,
-    /// Efficiencies in equal time, in the order of the rows.
-    pub equal_time: Vec<EqualTime>,
-    /// Check of the means against their references.
-    pub check: Check,
-}
 
 /// Variances of one model and sampler under one light.
 #[derive(Clone, Debug, Serialize)]

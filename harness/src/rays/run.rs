@@ -1,14 +1,30 @@
 //! Run of every model and sampler under every light.
 
-use super::result::{RayFigures, RayPose, RayRow, RaysResult};
-use super::{EqualTime, Lit, RaySubject, measure, times};
+use super::result::{RayFigures, RayPose, RayRow};
+use super::{EqualTime, Lit, RaySubject, RayTimes, measure, times};
 use crate::efficiency::{Check, EfficiencyResult, THETA_O_DEG, intensity, stratified};
 use crate::lights::Lights;
 use hairis_instruments::light::{Light, product};
 use hairis_instruments::progress::Progress;
 use hairis_instruments::sequence::stream_id;
 use hairis_instruments::stats::Estimate;
+use serde::Serialize;
 use std::collections::HashMap;
+
+/// Results about rays that are chosen from candidates.
+#[derive(Clone, Debug, Serialize)]
+pub struct RaysResult {
+    /// Number of pools of 32 + 32 candidates drawn per shading point; smaller pools are parts of them.
+    pub pools: usize,
+    /// Variances by model, sampler and light, which depend on the seed alone.
+    pub rows: Vec<RayRow>,
+    /// Times of this machine, in the order of the rows.
+    pub times: Vec<RayTimes>,
+    /// Efficiencies in equal time, in the order of the rows.
+    pub equal_time: Vec<EqualTime>,
+    /// Check of the means against their references.
+    pub check: Check,
+}
 
 /// Settings of a run of the variances and times of rays.
 #[derive(Clone, Copy, Debug)]
