@@ -15,6 +15,7 @@ mod cut;
 mod formulas;
 mod matched;
 mod sampler;
+mod shape;
 
 use crate::interface::{LobeAt, Reference, ReferenceSample};
 use crate::real::Real;
@@ -23,8 +24,9 @@ use hairis::params::HairDesc;
 use hairis::{Lobe, PerLobe};
 
 pub use cauchy::CauchyDensity;
-pub use formulas::{HairFormulas, Shape};
+pub use formulas::HairFormulas;
 pub use matched::MatchedReference;
+pub use shape::Shape;
 
 /// The published model and its published sampler, for one set of parameters and one `wo`.
 ///

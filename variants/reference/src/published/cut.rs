@@ -1,6 +1,6 @@
 //! Bell cut to an interval, from which the matched sampler draws.
 
-use super::Shape;
+use super::shape::Shape;
 use crate::real::Real;
 
 /// Bell cut to an interval, with its cdf and the inverse of the cdf.

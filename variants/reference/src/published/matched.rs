@@ -1,7 +1,8 @@
 //! Formulas of the matched sampler [`Matched`](hairis::Matched), line by line.
 
 use super::cut::Cut;
-use super::{Angles, HairReference, Shape};
+use super::shape::Shape;
+use super::{Angles, HairReference};
 use crate::interface::{LobeAt, Reference, ReferenceSample};
 use crate::real::Real;
 use crate::steps::{choose, mix_pdfs, shares};
