@@ -4,6 +4,7 @@ pub(crate) mod albedo;
 mod angles;
 mod bell;
 mod conserving;
+mod gaussian;
 mod matched;
 mod published;
 pub(crate) mod quadrature;
@@ -16,7 +17,8 @@ use conserving::AlbedoFit;
 use published::{PublishedMaterial, PublishedPrepared};
 use view::{HairLobes, HairView};
 
-pub use bell::{Bell, FourBells, Gaussian, TwoBells};
+pub use bell::{Bell, FourBells, TwoBells};
+pub use gaussian::Gaussian;
 pub use matched::{Matched, MatchedBell};
 
 pub(crate) use angles::{Angles, LobeTerms};

@@ -1,79 +1,12 @@
 //! Directional albedo of the published model, by quadrature over each bell.
 
 use super::HairView;
+use super::bell::Nodes;
 use crate::hair::quadrature::{COARSE, GRADED};
 use crate::model::math::{FRAC_PI_2_LOW, half_atan2, sin_cos_half_turn};
 use crate::model::{Bell, PerLobe};
 use crate::simd::{Broadcast, Lanes, lanes3};
 use core::f32::consts::FRAC_PI_2;
-
-/// Nodes of an integral over `x`, the distance from the centre of a bell in widths. The nodes are even in `u`, with
-/// `x = u / (1 - u^2)`, except for the grading towards both ends.
-///
-/// A bell of any width is smooth over `u`, and so are the cosines beside it up to the ends.
-#[derive(Clone, Copy)]
-struct Nodes<L> {
-    /// `1 + u` of the first node, and `1 - u` of the last: they keep their digits where they vanish.
-    above: L,
-    below: L,
-    span: L,
-}
-
-impl<L: Lanes> Nodes<L> {
-    #[inline(always)]
-    fn between(from: L, to: L) -> Self {
-        let ([above, below_from], [above_to, below]) = (compress(from), compress(to));
-        Self {
-            above,
-            below,
-            span: L::select(L::splat(0.0).lt(from), below_from - below, above_to - above),
-        }
-    }
-
-    /// Returns `x` of a node, and its weight times `dx`.
-    #[inline(always)]
-    fn at(&self, [node, rest, weight]: [f32; 3]) -> (L, L) {
-        let c = L::splat;
-        let above = c(node).mul_add(self.span, self.above);
-        let below = c(rest).mul_add(self.span, self.below);
-        let inv = L::quotient(c(1.0), above * below);
-        let u = (above - below) * 0.5;
-        (
-            u * inv,
-            u.mul_add(u, c(1.0)) * (inv * inv) * (self.span * weight),
-        )
-    }
-}
-
-/// Returns `1 + u` and `1 - u` for `x = u / (1 - u^2)`.
-#[inline(always)]
-fn compress<L: Lanes>(x: L) -> [L; 2] {
-    let (zero, one) = (L::splat(0.0), L::splat(1.0));
-    let twice = (x + x).abs();
-    let root = twice.mul_add(twice, one).sqrt();
-    let inv = L::quotient(one, one + root);
-    let (large, small) = (
-        twice.mul_add(inv, one),
-        (one + L::quotient(one, root + twice)) * inv,
-    );
-    let negative = x.lt(zero);
-    [
-        L::select(negative, small, large),
-        L::select(negative, large, small),
-    ]
-}
-
-/// Integrates a bell over `[lo, hi]`, in widths from its centre.
-#[inline]
-pub(super) fn bell_area<B: Bell, L: Lanes>(lo: L, hi: L) -> L {
-    let (one, nodes) = (L::splat(1.0), Nodes::between(lo, hi));
-    let mut sum = L::splat(0.0);
-    for node in GRADED {
-        let (x, dx) = nodes.at(node);
-        sum = sum + B::one(x * x, L::quotient(one, one + x * x)) * dx;
-    }
-    sum
-}
 
 /// Computes the directional albedo of each lobe, linear RGB; 0 if `wo` is not finite.
 #[inline(always)]

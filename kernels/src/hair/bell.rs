@@ -1,10 +1,7 @@
 //! Bell curves that the published model is built of: its extension point.
 
-use super::albedo::bell_area;
-use super::matched::MatchedBell;
-use crate::model::math::gaussian;
+use super::quadrature::GRADED;
 use crate::simd::Lanes;
-use crate::simd::pair::Pair;
 
 /// Bell curve of unit peak, which takes the place of every Gaussian of the published model.
 ///
@@ -102,36 +99,70 @@ pub struct FourBells<L> {
     pub glint: TwoBells<L>,
 }
 
-/// Bell of the published model: `exp(-s/2)`, a Gaussian whose standard deviation is the width.
+/// Nodes of an integral over `x`, the distance from the centre of a bell in widths. The nodes are even in `u`, with
+/// `x = u / (1 - u^2)`, except for the grading towards both ends.
 ///
-/// - Source: Ou et al. 2012, table 2; unit peak by ERRATA E4.
-/// - Accuracy: exactly 0 from about `2^-115` down, see [`crate::model::math::gaussian`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Gaussian;
+/// A bell of any width is smooth over `u`, and so are the cosines beside it up to the ends.
+#[derive(Clone, Copy)]
+pub(super) struct Nodes<L> {
+    /// `1 + u` of the first node, and `1 - u` of the last: they keep their digits where they vanish.
+    above: L,
+    below: L,
+    span: L,
+}
 
-impl Bell for Gaussian {
+impl<L: Lanes> Nodes<L> {
     #[inline(always)]
-    fn one<L: Lanes>(s: L, _cauchy: L) -> L {
-        gaussian(s)
+    pub(super) fn between(from: L, to: L) -> Self {
+        let ([above, below_from], [above_to, below]) = (compress(from), compress(to));
+        Self {
+            above,
+            below,
+            span: L::select(L::splat(0.0).lt(from), below_from - below, above_to - above),
+        }
     }
 
-    // The product of two Gaussians is one Gaussian.
+    /// Returns `x` of a node, and its weight times `dx`.
     #[inline(always)]
-    fn two<L: Lanes>(at: TwoBells<L>) -> L {
-        gaussian(at.s + at.t)
+    pub(super) fn at(&self, [node, rest, weight]: [f32; 3]) -> (L, L) {
+        let c = L::splat;
+        let above = c(node).mul_add(self.span, self.above);
+        let below = c(rest).mul_add(self.span, self.below);
+        let inv = L::quotient(c(1.0), above * below);
+        let u = (above - below) * 0.5;
+        (
+            u * inv,
+            u.mul_add(u, c(1.0)) * (inv * inv) * (self.span * weight),
+        )
     }
+}
 
-    // Interleaved in pairs, so that each constant is read once for two bells, and no dependency chain waits alone. Four bells at a
-    // time would need more registers than AVX2 has.
-    #[inline(always)]
-    fn four<L: Lanes>(at: FourBells<L>) -> [L; 4] {
-        let Pair(r, tt) = gaussian(Pair(at.s_r, at.tt.s + at.tt.t));
-        let Pair(trt, glint) = gaussian(Pair(at.s_trt, at.glint.s + at.glint.t));
-        [r, tt, trt, glint]
-    }
+/// Returns `1 + u` and `1 - u` for `x = u / (1 - u^2)`.
+#[inline(always)]
+fn compress<L: Lanes>(x: L) -> [L; 2] {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    let twice = (x + x).abs();
+    let root = twice.mul_add(twice, one).sqrt();
+    let inv = L::quotient(one, one + root);
+    let (large, small) = (
+        twice.mul_add(inv, one),
+        (one + L::quotient(one, root + twice)) * inv,
+    );
+    let negative = x.lt(zero);
+    [
+        L::select(negative, small, large),
+        L::select(negative, large, small),
+    ]
+}
 
-    #[inline(always)]
-    fn area<L: Lanes>(lo: L, hi: L) -> L {
-        Self::closed_area(lo, hi)
+/// Integrates a bell over `[lo, hi]`, in widths from its centre.
+#[inline]
+pub(super) fn bell_area<B: Bell, L: Lanes>(lo: L, hi: L) -> L {
+    let (one, nodes) = (L::splat(1.0), Nodes::between(lo, hi));
+    let mut sum = L::splat(0.0);
+    for node in GRADED {
+        let (x, dx) = nodes.at(node);
+        sum = sum + B::one(x * x, L::quotient(one, one + x * x)) * dx;
     }
+    sum
 }

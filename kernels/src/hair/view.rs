@@ -1,6 +1,6 @@
 //! Lobes of a material, and the view terms of a shading point, which all samplers of the published model share.
 
-use super::albedo::bell_area;
+use super::bell::bell_area;
 use crate::model::lobe::times;
 use crate::model::math::{FRAC_PI_2_LOW, half_atan2_parts};
 use crate::model::{Bell, LobeMask, Precision};
