@@ -2,7 +2,7 @@
 
 use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, evals, samples};
 use crate::fields::double;
-use crate::hair::Material;
+use crate::material::Material;
 use crate::values::{items, literal, vector, word};
 use hairis_capi::layout::{BSDF_SIZE, LobeResult, RawBsdf};
 use hairis_capi::{columns, points};
@@ -229,8 +229,7 @@ impl Bsdf {
 
     fn __repr__(&self) -> String {
         let [u, v, w] = self.wo.map(|x| literal(double(x)));
-        let (material, h) = (self.material.get(), literal(double(self.h)));
-        let material = material.call_of(&material.values);
+        let (material, h) = (self.material.get().__repr__(), literal(double(self.h)));
         let lobes = if self.is_whole() {
             String::new()
         } else {

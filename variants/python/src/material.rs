@@ -1,17 +1,56 @@
-//! Materials of Python: how they are made, and their calls on many hits.
+//! Materials of Python: a model with checked parameters, and its calls on many hits.
 
 use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, evals, samples};
 use crate::bsdf::Bsdf;
-use crate::fields::{Value, double, fields_of};
+use crate::fields::{Value, check, double, fields_of, no_error};
 use crate::gradients::{self, GRADIENTS, Inputs};
-use crate::hair::Material;
 use crate::values::{CONSERVING, energy_of, number, params_of, vector, word, written};
-use hairis_capi::layout::{Hits, RawMaterial};
+use core::fmt::Write;
+use hairis_capi::layout::{Hits, MATERIAL_SIZE, Params, RawMaterial};
 use hairis_capi::{hits, setup};
 use hairis_materials::MaterialSpec;
+use hairis_variants::{ModelId, Values};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
+
+/// Hair: a model with checked parameters.
+///
+/// Parameters
+/// ----------
+/// model : str
+///     "gaussian", "cauchy", "kajiya-kay" or "chiang"; `hairis.models()` lists them with their fields.
+/// preset : str, optional
+///     Name of values for all fields: "brown", "blond" and so on. Without a preset, fields have the model's defaults.
+/// energy : {"conserving", "raw", "scaled"}
+///     With "conserving", no direction returns more light than arrives. With "raw", the model stays as it is. With "scaled", the
+///     model is darker but stays reciprocal.
+/// **fields
+///     Values in place of the preset's values: numbers, sequences of numbers, or words. Angles are in radians, colours in linear RGB.
+///     The field "sampler" of "gaussian" and "cauchy" and the field "select" of "chiang" choose how directions are sampled.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If a name does not exist or a value is out of its range. The message lists the valid names, or states the rule.
+///
+/// Examples
+/// --------
+/// >>> hair = hairis.Material("gaussian", "brown", sampler="matched", i_g=0.5)
+/// >>> hair.fields["i_g"]
+/// 0.5
+/// >>> eval(repr(hair)) == hair
+/// True
+/// >>> hairis.Material("gaussian", beta=(0.1, 0.0, 0.2))
+/// Traceback (most recent call last):
+/// ValueError: beta[1] must be a width in [1e-4, pi] rad, got 0
+#[pyclass(frozen, module = "hairis")]
+pub(crate) struct Material {
+    pub(crate) raw: RawMaterial,
+    pub(crate) id: ModelId,
+    values: Values,
+    energy: &'static str,
+}
 
 /// Columns of hits that a call reads: `wo`, directions or uniform numbers, and `h`.
 type Columns<'py> = (Input<'py>, Input<'py>, Option<Input<'py>>);
@@ -32,6 +71,48 @@ type Call<T> = unsafe extern "C" fn(
 ) -> i32;
 
 impl Material {
+    /// Makes a material from parameters, and from an energy with its code.
+    fn of(params: &Params, (energy, code): (&'static str, u32)) -> PyResult<Self> {
+        let mut error = no_error();
+        let mut raw = RawMaterial {
+            head: [0; 4],
+            body: [0; MATERIAL_SIZE - 16],
+        };
+        // SAFETY: the arguments are of this call.
+        let (status, read) = unsafe {
+            let status = setup::hairis_material_init(&raw mut raw, params, code, &raw mut error);
+            (status, setup::values_of(params, core::ptr::null_mut()))
+        };
+        check(status, &error)?;
+        let Ok((id, values)) = read else {
+            unreachable!("the material is made of them")
+        };
+        Ok(Self {
+            raw,
+            id,
+            values,
+            energy,
+        })
+    }
+
+    /// Returns the fields that have a value.
+    fn given(&self) -> Vec<(&'static str, Value)> {
+        fields_of(&self.values.map(double))
+    }
+
+    /// Returns the call that makes the material of these values.
+    fn call_of(&self, values: &Values) -> String {
+        let (name, energy) = (self.id.name(), self.energy);
+        let mut text = format!("hairis.Material(\"{name}\", energy=\"{energy}\"");
+        if let Some((field, word)) = self.id.choice() {
+            let _ = write!(text, ", {field}=\"{word}\"");
+        }
+        for (name, value) in fields_of(&values.map(double)) {
+            let _ = write!(text, ", {name}={}", written(&value, false));
+        }
+        text + ")"
+    }
+
     /// Calls the C interface on hits. The caller must hold a borrow of the arrays of `to`.
     fn call<T>(
         &self,
@@ -381,7 +462,7 @@ impl Material {
         Ok((outputs.dict, dict_of(py, numbers)?))
     }
 
-    fn __repr__(&self) -> String {
+    pub(crate) fn __repr__(&self) -> String {
         self.call_of(&self.values)
     }
 
