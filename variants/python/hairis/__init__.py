@@ -2,13 +2,16 @@
 
 >>> hair = hairis.Material("gaussian", "brown", sampler="matched")
 >>> bsdf = hair.prepare(wo=(0.6, 0.0, 0.8))
->>> samples = bsdf.sample_columns(np.random.default_rng(1).random((3, 1000), np.float32))
+>>> bsdf.eval((0, 0.6, 0.8)).shape
+(3,)
+>>> samples = bsdf.sample(np.random.default_rng(1).random((4, 1000, 3)))
 >>> samples["weight"].shape
-(3, 1000)
+(4, 1000, 3)
 
 Directions point away from the fibre, in its frame: u runs along the fibre from root to tip, and v and w lie across it. `wo` points
-towards the viewer and `wi` towards the light. Columns are float32 of shape (3, N) or (N,), C-contiguous and aligned; nothing is
-converted. Calls release the interpreter's lock, so that the caller may run them in threads of its own.
+towards the viewer and `wi` towards the light. `eval`, `pdf`, `eval_pdf` and `sample` take arrays of any shape whose last dimension is the
+component, and their shapes broadcast. The calls named after columns and hits are faster: columns are float32 of shape (3, N) or (N,),
+C-contiguous and aligned, and nothing is converted. Calls release the interpreter's lock, so that the caller may run them in threads.
 """
 
 from ._hairis import Bsdf, Material, level, models

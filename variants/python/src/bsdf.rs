@@ -3,7 +3,9 @@
 use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, evals, samples};
 use crate::fields::double;
 use crate::material::Material;
-use crate::values::{items, literal, vector, word};
+use crate::shapes::{EVAL, PDF, SAMPLE, any_shape, one, pair};
+use crate::text::literal;
+use crate::values::{items, vector, word};
 use hairis_capi::layout::{BSDF_SIZE, LobeResult, RawBsdf};
 use hairis_capi::{columns, points};
 use pyo3::exceptions::PyValueError;
@@ -145,6 +147,94 @@ impl Bsdf {
                 ..*self
             })
         })
+    }
+
+    /// Evaluates S without the cosine, linear RGB, per steradian.
+    ///
+    /// Parameters
+    /// ----------
+    /// wi : array_like, shape (..., 3)
+    ///     Directions towards the light, in the fibre's frame, of unit length: one, or any number in any shape.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, float32, shape (..., 3)
+    ///
+    /// Examples
+    /// --------
+    /// >>> bsdf = hairis.Material("gaussian", "brown").prepare((0.6, 0.0, 0.8))
+    /// >>> bsdf.eval((0, 0.6, 0.8)).shape, bsdf.eval(np.ones((4, 5, 3))).shape
+    /// ((3,), (4, 5, 3))
+    fn eval<'py>(slf: &Bound<'py, Self>, wi: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        one(
+            &any_shape(slf.as_any(), "eval_columns", &EVAL, &[("wi", wi)], None)?,
+            EVAL[0],
+        )
+    }
+
+    /// Evaluates the density with which `sample` draws directions, per steradian.
+    ///
+    /// Parameters
+    /// ----------
+    /// wi : array_like, shape (..., 3)
+    ///     As in `eval`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, float32, shape (...)
+    ///
+    /// Examples
+    /// --------
+    /// >>> bsdf = hairis.Material("gaussian", "brown").prepare((0.6, 0.0, 0.8))
+    /// >>> bool(bsdf.pdf((0, 0.6, 0.8)) > 0)
+    /// True
+    fn pdf<'py>(slf: &Bound<'py, Self>, wi: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        one(
+            &any_shape(slf.as_any(), "eval_columns", &PDF, &[("wi", wi)], None)?,
+            PDF[0],
+        )
+    }
+
+    /// Evaluates what `eval` and `pdf` return, in one call that takes the time of one of them.
+    ///
+    /// Examples
+    /// --------
+    /// >>> value, pdf = hairis.Material("chiang").prepare((0, 1, 0)).eval_pdf(np.ones((4, 3)))
+    /// >>> value.shape, pdf.shape
+    /// ((4, 3), (4,))
+    fn eval_pdf<'py>(
+        slf: &Bound<'py, Self>,
+        wi: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let both = [EVAL[0], PDF[0]];
+        pair(&any_shape(
+            slf.as_any(),
+            "eval_columns",
+            &both,
+            &[("wi", wi)],
+            None,
+        )?)
+    }
+
+    /// Draws samples at the hit.
+    ///
+    /// Parameters
+    /// ----------
+    /// xi : array_like, shape (..., 3)
+    ///     Uniform numbers in [0, 1), which select the lobe, the inclination and the azimuth.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     "wi", "value" and "weight", shape (..., 3), "pdf" and "lobe", shape (...): as in `Material.sample_hits`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> bsdf = hairis.Material("gaussian", "brown").prepare((0.6, 0.0, 0.8))
+    /// >>> bsdf.sample(np.random.default_rng(1).random((10, 3)))["wi"].shape
+    /// (10, 3)
+    fn sample<'py>(slf: &Bound<'py, Self>, xi: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+        any_shape(slf.as_any(), "sample_columns", &SAMPLE, &[("xi", xi)], None)
     }
 
     /// Evaluates values and densities of N directions.

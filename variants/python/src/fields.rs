@@ -3,8 +3,9 @@
 use core::ffi::c_char;
 use hairis_capi::layout::Error;
 use hairis_variants::{Kind, Values};
-use pyo3::PyErr;
 use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
 
 /// Returns the text of an array that ends in 0.
 fn text(from: &[c_char]) -> String {
@@ -61,4 +62,20 @@ pub(crate) fn fields_of(values: &Values<f64>) -> Vec<(&'static str, Value)> {
             (field.name, value)
         })
         .collect()
+}
+
+/// Makes a dict of values by name, each a float, a tuple of floats or a word.
+pub(crate) fn dict_of(
+    py: Python<'_>,
+    values: impl IntoIterator<Item = (&'static str, Value)>,
+) -> PyResult<Bound<'_, PyDict>> {
+    let dict = PyDict::new(py);
+    for (name, value) in values {
+        match value {
+            Value::Number(x) => dict.set_item(name, x)?,
+            Value::Numbers(numbers) => dict.set_item(name, PyTuple::new(py, numbers)?)?,
+            Value::Word(word) => dict.set_item(name, word)?,
+        }
+    }
+    Ok(dict)
 }

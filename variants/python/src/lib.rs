@@ -8,7 +8,10 @@ mod arrays;
 mod bsdf;
 mod fields;
 mod gradients;
+mod hits;
 mod material;
+mod shapes;
+mod text;
 mod values;
 
 use bsdf::Bsdf;

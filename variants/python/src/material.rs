@@ -1,12 +1,14 @@
 //! Materials of Python: a model with checked parameters, and its calls on many hits.
 
-use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, evals, samples};
+use crate::arrays::{EVALS, Outputs, SAMPLES, evals, samples};
 use crate::bsdf::Bsdf;
-use crate::fields::{Value, check, double, fields_of, no_error};
-use crate::gradients::{self, GRADIENTS, Inputs};
-use crate::values::{CONSERVING, energy_of, number, params_of, vector, word, written};
-use core::fmt::Write;
-use hairis_capi::layout::{Hits, MATERIAL_SIZE, Params, RawMaterial};
+use crate::fields::{Value, check, dict_of, double, fields_of, no_error};
+use crate::gradients;
+use crate::hits::{all, call, inputs};
+use crate::shapes::{EVAL, PDF, SAMPLE, any_shape, one, pair};
+use crate::text;
+use crate::values::{CONSERVING, energy_of, number, params_of, vector, word};
+use hairis_capi::layout::{MATERIAL_SIZE, Params, RawMaterial};
 use hairis_capi::{hits, setup};
 use hairis_materials::MaterialSpec;
 use hairis_variants::{ModelId, Values};
@@ -52,24 +54,6 @@ pub(crate) struct Material {
     energy: &'static str,
 }
 
-/// Columns of hits that a call reads: `wo`, directions or uniform numbers, and `h`.
-type Columns<'py> = (Input<'py>, Input<'py>, Option<Input<'py>>);
-
-/// Returns all columns of hits.
-fn all<'a, 'py>((wo, third, h): &'a Columns<'py>) -> Vec<&'a Input<'py>> {
-    [wo, third].into_iter().chain(h).collect()
-}
-
-/// Function of the C interface on hits, which writes columns `T`.
-type Call<T> = unsafe extern "C" fn(
-    *const RawMaterial,
-    usize,
-    usize,
-    *const Hits,
-    *const [*const f32; 3],
-    *const T,
-) -> i32;
-
 impl Material {
     /// Makes a material from parameters, and from an energy with its code.
     fn of(params: &Params, (energy, code): (&'static str, u32)) -> PyResult<Self> {
@@ -99,49 +83,6 @@ impl Material {
     fn given(&self) -> Vec<(&'static str, Value)> {
         fields_of(&self.values.map(double))
     }
-
-    /// Returns the call that makes the material of these values.
-    fn call_of(&self, values: &Values) -> String {
-        let (name, energy) = (self.id.name(), self.energy);
-        let mut text = format!("hairis.Material(\"{name}\", energy=\"{energy}\"");
-        if let Some((field, word)) = self.id.choice() {
-            let _ = write!(text, ", {field}=\"{word}\"");
-        }
-        for (name, value) in fields_of(&values.map(double)) {
-            let _ = write!(text, ", {name}={}", written(&value, false));
-        }
-        text + ")"
-    }
-
-    /// Calls the C interface on hits. The caller must hold a borrow of the arrays of `to`.
-    fn call<T>(
-        &self,
-        py: Python<'_>,
-        (wo, third, h): &Columns<'_>,
-        to: &T,
-        call: Call<T>,
-    ) -> PyResult<()> {
-        let hits = Hits {
-            wo: wo.rows(),
-            h: h.as_ref().map_or(core::ptr::null(), |h| h.rows()[0]),
-            index: core::ptr::null(),
-        };
-        let (raw, n, rows) = (&raw const self.raw, wo.n, third.rows());
-        // SAFETY: the arrays have n numbers in each row, and are borrowed.
-        Detached(move || unsafe { call(raw, 1, n, &raw const hits, &raw const rows, to) }).run(py)
-    }
-
-    /// Reads the columns of hits: `wo`, `h` and the third, all of one length.
-    fn inputs<'py>(
-        wo: &Bound<'py, PyAny>,
-        third: (&'static str, &Bound<'py, PyAny>),
-        h: Option<&Bound<'py, PyAny>>,
-    ) -> PyResult<Columns<'py>> {
-        let wo = Input::new("wo", wo, 3, None)?;
-        let n = Some(wo.n);
-        let third = Input::new(third.0, third.1, 3, n)?;
-        Ok((wo, third, h.map(|h| Input::new("h", h, 1, n)).transpose()?))
-    }
 }
 
 /// Reads the argument `model`.
@@ -152,22 +93,6 @@ fn model_of(value: &Bound<'_, PyAny>) -> PyResult<String> {
 /// Reads the argument `h`.
 fn offset_of(value: &Bound<'_, PyAny>) -> PyResult<f32> {
     number(&"h", value)
-}
-
-/// Makes a dict of values by name, each a float, a tuple of floats or a word.
-fn dict_of(
-    py: Python<'_>,
-    values: impl IntoIterator<Item = (&'static str, Value)>,
-) -> PyResult<Bound<'_, PyDict>> {
-    let dict = PyDict::new(py);
-    for (name, value) in values {
-        match value {
-            Value::Number(x) => dict.set_item(name, x)?,
-            Value::Numbers(numbers) => dict.set_item(name, PyTuple::new(py, numbers)?)?,
-            Value::Word(word) => dict.set_item(name, word)?,
-        }
-    }
-    Ok(dict)
 }
 
 #[pymethods]
@@ -225,19 +150,7 @@ impl Material {
     /// >>> hairis.Material("kajiya-kay", "brown").to_json()[:34]
     /// '{"model": "kajiya-kay", "params": '
     fn to_json(&self) -> String {
-        let choice = self.id.choice().map_or_else(String::new, |(field, word)| {
-            format!(" \"{field}\": \"{word}\",")
-        });
-        let given = self.given();
-        let params: Vec<_> = given
-            .iter()
-            .map(|(name, value)| format!("\"{name}\": {}", written(value, true)))
-            .collect();
-        format!(
-            "{{\"model\": \"{}\",{choice} \"params\": {{{}}}}}",
-            self.id.name(),
-            params.join(", ")
-        )
+        text::json(self.id, &self.given())
     }
 
     /// Name of the model: "gaussian", "cauchy", "kajiya-kay" or "chiang".
@@ -306,6 +219,106 @@ impl Material {
         Ok(Bsdf::new(slf.unbind(), vector("wo", wo)?, h))
     }
 
+    /// Evaluates S without the cosine, linear RGB, per steradian, each direction at a hit of its own.
+    ///
+    /// Parameters
+    /// ----------
+    /// wo, wi : array_like, shape (..., 3)
+    ///     Directions towards the viewer and the light, in the fibre's frame, of unit length. All shapes broadcast.
+    /// h : array_like, shape (...)
+    ///     Offsets of the hits across the fibre, in [-1, 1].
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, float32, shape (..., 3)
+    ///
+    /// Examples
+    /// --------
+    /// >>> hairis.Material("chiang").eval((0, 1, 0), np.ones((4, 1, 3)), h=np.linspace(-1, 1, 5)).shape
+    /// (4, 5, 3)
+    #[pyo3(signature = (wo, wi, h=None))]
+    fn eval<'py>(
+        slf: &Bound<'py, Self>,
+        wo: &Bound<'py, PyAny>,
+        wi: &Bound<'py, PyAny>,
+        h: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let vectors = [("wo", wo), ("wi", wi)];
+        one(
+            &any_shape(slf.as_any(), "eval_hits", &EVAL, &vectors, h)?,
+            EVAL[0],
+        )
+    }
+
+    /// Evaluates the density with which `sample` draws directions, per steradian: an array of shape (...), of the arguments of `eval`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> hairis.Material("gaussian").pdf(np.ones((4, 3)), (0, 0, 1)).shape
+    /// (4,)
+    #[pyo3(signature = (wo, wi, h=None))]
+    fn pdf<'py>(
+        slf: &Bound<'py, Self>,
+        wo: &Bound<'py, PyAny>,
+        wi: &Bound<'py, PyAny>,
+        h: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let vectors = [("wo", wo), ("wi", wi)];
+        one(
+            &any_shape(slf.as_any(), "eval_hits", &PDF, &vectors, h)?,
+            PDF[0],
+        )
+    }
+
+    /// Evaluates what `eval` and `pdf` return, in one call that takes the time of one of them.
+    ///
+    /// Examples
+    /// --------
+    /// >>> [x.shape for x in hairis.Material("gaussian").eval_pdf((0, 1, 0), np.ones((4, 3)))]
+    /// [(4, 3), (4,)]
+    #[pyo3(signature = (wo, wi, h=None))]
+    fn eval_pdf<'py>(
+        slf: &Bound<'py, Self>,
+        wo: &Bound<'py, PyAny>,
+        wi: &Bound<'py, PyAny>,
+        h: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let (vectors, both) = ([("wo", wo), ("wi", wi)], [EVAL[0], PDF[0]]);
+        pair(&any_shape(slf.as_any(), "eval_hits", &both, &vectors, h)?)
+    }
+
+    /// Draws samples, each at a hit of its own.
+    ///
+    /// Parameters
+    /// ----------
+    /// wo : array_like, shape (..., 3)
+    ///     Directions towards the viewer, in the fibre's frame, of unit length. All shapes broadcast.
+    /// xi : array_like, shape (..., 3)
+    ///     Uniform numbers in [0, 1), which select the lobe, the inclination and the azimuth.
+    /// h : array_like, shape (...)
+    ///     Offsets of the hits across the fibre, in [-1, 1].
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     "wi", "value" and "weight", shape (..., 3), "pdf" and "lobe", shape (...): as in `sample_hits`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> xi = np.random.default_rng(1).random((2, 10, 3))
+    /// >>> hairis.Material("cauchy").sample((0.6, 0.8, 0), xi)["weight"].shape
+    /// (2, 10, 3)
+    #[pyo3(signature = (wo, xi, h=None))]
+    fn sample<'py>(
+        slf: &Bound<'py, Self>,
+        wo: &Bound<'py, PyAny>,
+        xi: &Bound<'py, PyAny>,
+        h: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let vectors = [("wo", wo), ("xi", xi)];
+        any_shape(slf.as_any(), "sample_hits", &SAMPLE, &vectors, h)
+    }
+
     /// Evaluates values and densities of N directions, each at a hit of its own.
     ///
     /// Parameters
@@ -338,9 +351,15 @@ impl Material {
         h: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let inputs = Self::inputs(wo, ("wi", wi), h)?;
+        let inputs = inputs(wo, ("wi", wi), h)?;
         let outputs = Outputs::new(py, out, &EVALS, &all(&inputs))?;
-        self.call(py, &inputs, &evals(&outputs), hits::hairis_eval_hits)?;
+        call(
+            &self.raw,
+            py,
+            &inputs,
+            &evals(&outputs),
+            hits::hairis_eval_hits,
+        )?;
         Ok(outputs.dict)
     }
 
@@ -380,9 +399,15 @@ impl Material {
         h: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let inputs = Self::inputs(wo, ("xi", xi), h)?;
+        let inputs = inputs(wo, ("xi", xi), h)?;
         let outputs = Outputs::new(py, out, &SAMPLES, &all(&inputs))?;
-        self.call(py, &inputs, &samples(&outputs), hits::hairis_sample_hits)?;
+        call(
+            &self.raw,
+            py,
+            &inputs,
+            &samples(&outputs),
+            hits::hairis_sample_hits,
+        )?;
         Ok(outputs.dict)
     }
 
@@ -429,41 +454,20 @@ impl Material {
         h: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
-        let hits = Self::inputs(wo, ("wi", wi), h)?;
-        let d_value = Input::new("d_value", d_value, 3, Some(hits.0.n))?;
-        let read = [&all(&hits)[..], &[&d_value]].concat();
-        let outputs = Outputs::new(py, out, &GRADIENTS, &read)?;
-        let (wo, wi, h) = &hits;
-        let (id, values) = (self.id, &self.values);
-        let (inputs, is_raw) = (
-            Inputs {
-                wo,
-                h: h.as_ref(),
-                wi,
-                d_value: &d_value,
-            },
-            self.energy == "raw",
-        );
-        let (rows, mut done) = (&outputs.rows[..], None);
-        let to = &mut done;
-        Detached(move || {
-            // SAFETY: the arrays have n numbers in each row, and are borrowed.
-            *to = Some(unsafe { gradients::eval_grad(id, values, is_raw, &inputs, rows) });
-            0
-        })
-        .run(py)?;
-        let derivatives = match done {
-            Some(Ok(derivatives)) => derivatives,
-            Some(Err(refusal)) => return Err(refusal.raise(self.energy)),
-            None => unreachable!("the call ran"),
-        };
+        let (columns, derivatives) = gradients::call(
+            py,
+            (self.id, &self.values, self.energy),
+            &inputs(wo, ("wi", wi), h)?,
+            d_value,
+            out,
+        )?;
         let d_fields = fields_of(&derivatives).into_iter();
         let numbers = d_fields.filter(|(_, value)| !matches!(value, Value::Word(_)));
-        Ok((outputs.dict, dict_of(py, numbers)?))
+        Ok((columns, dict_of(py, numbers)?))
     }
 
     pub(crate) fn __repr__(&self) -> String {
-        self.call_of(&self.values)
+        text::call(self.id, self.energy, &self.given())
     }
 
     fn __eq__(&self, other: &Self) -> bool {
@@ -472,8 +476,8 @@ impl Material {
 
     /// Hashes 0 and -0, which are equal, alike.
     fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
-        let values = self.values.map(|x| x + 0.0);
-        PyString::new(py, &self.call_of(&values)).hash()
+        let given = fields_of(&self.values.map(|x| double(x + 0.0)));
+        PyString::new(py, &text::call(self.id, self.energy, &given)).hash()
     }
 
     /// Returns the arguments of the call that makes the same material, for pickle and copy.

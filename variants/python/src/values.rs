@@ -1,7 +1,7 @@
 //! Conversion of parameters and their values from Python to the C interface.
 
 use crate::arrays::description;
-use crate::fields::{Value, check, no_error};
+use crate::fields::{check, no_error};
 use core::ffi::CStr;
 use core::fmt::Display;
 use hairis_capi::layout::{ENERGY_CONSERVING, ENERGY_RAW, ENERGY_SCALED, Params};
@@ -205,26 +205,4 @@ fn set(params: &mut Params, field: &Field, value: &Bound<'_, PyAny>) -> PyResult
         )
     };
     check(status, &error)
-}
-
-/// Writes a number as an expression of Python, which has no literal of infinity and NaN.
-pub(crate) fn literal(x: f64) -> String {
-    if x.is_finite() {
-        format!("{x:?}")
-    } else {
-        format!("float(\"{x}\")")
-    }
-}
-
-/// Writes a value as Python does, or as JSON does.
-pub(crate) fn written(value: &Value, is_json: bool) -> String {
-    let (open, close) = if is_json { ('[', ']') } else { ('(', ')') };
-    match value {
-        Value::Number(x) => literal(*x),
-        Value::Word(word) => format!("\"{word}\""),
-        Value::Numbers(numbers) => {
-            let numbers: Vec<_> = numbers.iter().map(|x| literal(*x)).collect();
-            format!("{open}{}{close}", numbers.join(", "))
-        }
-    }
 }

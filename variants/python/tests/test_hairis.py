@@ -131,6 +131,56 @@ def test_hits_are_bsdfs() -> None:
         assert not (bits(hits["pdf"]) == bits(hair.eval_hits(wo, wi)["pdf"])).all()
 
 
+SHAPES: list[tuple[int, ...]] = [(), (7,), (1,), (0,), (2, 3), (3, 3), (2, 0, 4)]
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize(("model", "preset", "choice"), ALL[:: len(hairis.models()["gaussian"]["presets"])])
+def test_any_shape_is_columns(model: str, preset: str, choice: dict[str, Any], shape: tuple[int, ...]) -> None:
+    """Arrays of any shape have the bits of columns at their places, whatever their type and layout are."""
+    hair = hairis.Material(model, preset, **choice)
+    bsdf = hair.prepare((0.6, 0.0, 0.8), h=0.25)
+    n = int(np.prod(shape))
+    wi, wo, h = directions(n, 1), directions(n, 2), np.linspace(-1, 1, n, dtype=np.float32)
+    xi = np.random.default_rng(3).random((3, n), np.float32)
+
+    def shaped(column: NDArray[np.float32]) -> NDArray[np.float32]:
+        return column.T.reshape(*shape, 3) if column.ndim == 2 else column.reshape(shape)
+
+    def same(got: NDArray[Any], column: NDArray[np.float32]) -> None:
+        assert got.dtype == np.float32 and got.flags.c_contiguous
+        assert got.shape == shape + column.shape[:-1] and (bits(got) == bits(shaped(column))).all()
+
+    for of, columns, sampled, hit in (
+        (bsdf, bsdf.eval_columns(wi), bsdf.sample_columns(xi), ()),
+        (hair, hair.eval_hits(wo, wi, h), hair.sample_hits(wo, xi, h), (shaped(wo), shaped(h))),
+    ):
+        call: Any = of
+        before, after = hit[:1], hit[1:]
+        for argument in (shaped(wi), np.asfortranarray(shaped(wi)), shaped(wi).astype(float), shaped(wi).astype(">f4"), shaped(wi).tolist()):
+            if n > 0 or isinstance(argument, np.ndarray):
+                same(call.eval(*before, argument, *after), columns["value"])
+        same(call.pdf(*before, shaped(wi), *after), columns["pdf"])
+        for got, name in zip(call.eval_pdf(*before, shaped(wi), *after), ("value", "pdf")):
+            same(got, columns[name])
+        samples = call.sample(*before, shaped(xi), *after)
+        assert samples.keys() == sampled.keys()
+        for name, column in sampled.items():
+            same(samples[name], column)
+
+
+def test_shapes_broadcast() -> None:
+    hair = hairis.Material("chiang", "blond")
+    wo, wi, h = directions(4, 1).T.reshape(4, 1, 3), directions(5, 2).T, np.linspace(-0.9, 0.9, 6, dtype=np.float32).reshape(6, 1, 1)
+    whole = [np.ascontiguousarray(np.broadcast_to(a, (6, 4, 5, 3)).reshape(-1, 3).T) for a in (wo, wi)]
+    offsets = np.ascontiguousarray(np.broadcast_to(h, (6, 4, 5)).reshape(-1))
+    columns = hair.eval_hits(whole[0], whole[1], offsets)
+    value, pdf = hair.eval_pdf(wo, wi, h)
+    assert (bits(value) == bits(np.ascontiguousarray(columns["value"].T)).reshape(6, 4, 5, 3)).all()
+    assert (bits(pdf) == bits(columns["pdf"]).reshape(6, 4, 5)).all()
+    assert hair.sample((0, 1, 0), np.full((2, 3), 0.5), 0.3)["wi"].shape == (2, 3)
+
+
 def test_energy() -> None:
     bright = {energy: hairis.Material("gaussian", "bright", energy=energy) for energy in ("raw", "conserving", "scaled")}
     albedo = {name: sum(lobe[0] for lobe in one.prepare((0.99, 0.14, 0)).albedo().values()) for name, one in bright.items()}

@@ -35,6 +35,7 @@ def refusals() -> list[tuple[type[Exception], str, Call]]:
     def column(name: str, shape: str, got: str) -> str:
         return f"{name} must be float32 of shape {shape}, C-contiguous and aligned; got {got}"
 
+    vectors, before = "{} must be numbers of shape (..., 3), got", "must broadcast with the arguments before it, of shape"
     value = "beta[1] must be a width in [1e-4, pi] rad, got 0"
     most = "must be at most 3.4028235e38 in magnitude, got"
     return [
@@ -105,6 +106,19 @@ def refusals() -> list[tuple[type[Exception], str, Call]]:
         (TypeError, column("h", "(10,)", "<class 'float'>"), lambda: hair.eval_hits(good, good, 0.5)),
         (TypeError, column("d_value", "(3, 10)", "float32 of shape (3, 9), not C-contiguous"), lambda: raw.eval_grad(good, good, good[:, :9])),
         (TypeError, column("d_value", "(3, 10)", "float32 of shape (3, 10), not aligned"), lambda: raw.eval_grad(good, good, unaligned(10))),
+        # Arrays of any shape.
+        (TypeError, f"{vectors.format('wi')} float32 of shape (3, 10)", lambda: bsdf.eval(good)),
+        (TypeError, f"{vectors.format('wi')} int64 of shape ()", lambda: bsdf.pdf(7)),
+        (TypeError, f"{vectors.format('wi')} <class 'str'>", lambda: bsdf.eval_pdf("abc")),
+        (TypeError, f"{vectors.format('wi')} <class 'list'>", lambda: bsdf.eval([[0, 1, 0], [0, 1]])),
+        (TypeError, f"{vectors.format('wi')} complex128 of shape (3,)", lambda: bsdf.eval(np.ones(3, complex))),
+        (TypeError, f"{vectors.format('xi')} <class 'NoneType'>", lambda: bsdf.sample(None)),
+        (TypeError, f"{vectors.format('wo')} float64 of shape (2,)", lambda: hair.sample((0.6, 0.8), np.ones(3))),
+        (TypeError, "h must be numbers of shape (...), got <class 'str'>", lambda: hair.eval((0, 1, 0), (0, 1, 0), "x")),
+        (ValueError, f"wi {most} 1.000000e+39", lambda: bsdf.eval((0, 1e39, 0))),
+        (TypeError, f"{vectors.format('wi')} <class 'tuple'>", lambda: bsdf.eval((0, 10**400, 0))),
+        (ValueError, f"wi {before} (10,), got (9,)", lambda: hair.eval(good.T, good.T[:9])),
+        (ValueError, f"h {before} (10,), got (2, 9)", lambda: hair.pdf(good.T, (0, 1, 0), np.zeros((2, 9)))),
         # Outputs.
         (TypeError, "out must be a dict, got <class 'list'>", lambda: bsdf.eval_columns(good, out=[])),
         (ValueError, 'out must have some of value, pdf, got "weight"', lambda: bsdf.eval_columns(good, out={"weight": frozen})),
@@ -211,6 +225,10 @@ def test_refusals_name_their_argument(place: int) -> None:
         ("wi", lambda: bsdf.eval_columns(value)),
         ("xi", lambda: bsdf.sample_columns(value)),
         ("h", lambda: hair.eval_hits(good, good, value)),
+        ("wi", lambda: bsdf.eval(value)),
+        ("xi", lambda: bsdf.sample(value)),
+        ("wo", lambda: hair.eval_pdf(value, (0, 1, 0))),
+        ("h", lambda: hair.pdf(np.ones((2, 3)), (0, 1, 0), value)),
         ("d_value", lambda: hair.eval_grad(good, good, value)),
         ("out", lambda: bsdf.eval_columns(good, out=value)),
         ("out", lambda: bsdf.eval_columns(good, out={"pdf": value})),
