@@ -7,6 +7,7 @@ Needs the program hairis with hairis-shader, NumPy, the wheel, and the framework
 quantiles of errors against `hairis eval --path f64`, which are relative where the number is above 1e-8, for values and densities, for
 samples by the same numbers (distance of the direction), and of derivatives by every field and direction against the wheel's. The hostile
 set has poles, lobes without intensity, grazing hits and what is no direction: no result and no derivative of it may be infinite or NaN.
+The wheel must have the same source.
 
 HAIRIS_MATERIALS=20 and HAIRIS_HITS=10000 are the counts of random materials, and of hits of each.
 """
@@ -26,6 +27,7 @@ from typing import Any, NamedTuple
 
 import hairis
 import numpy as np
+from hairis._hairis import program as source_of
 
 MATERIALS, HITS = int(os.environ.get("HAIRIS_MATERIALS", 20)), int(os.environ.get("HAIRIS_HITS", 10_000))
 GRADIENTS = min(HITS, 200)
@@ -106,6 +108,13 @@ class Subject(NamedTuple):
         return values
 
 
+def printed(program: str, name: str, choice: dict[str, str], *flags: str) -> str:
+    """Returns the source that `hairis shader` prints."""
+    words = [part for word in choice.values() for part in ("--sampler", word)]
+    command = [program, "shader", "--model", name, "--target", "python", *words, *flags]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
 def subjects(program: str, folder: str) -> Iterator[dict[str, Subject]]:
     """Yields the models of the wheel, each by arithmetic."""
     for name, model in hairis.models().items():
@@ -113,10 +122,12 @@ def subjects(program: str, folder: str) -> Iterator[dict[str, Subject]]:
             choice, found = {} if word is None else {model["choice"]: word}, {}
             for arithmetic in ("gpu-native", "exact"):
                 file = f"{name}_{word}_{arithmetic}".replace("-", "_")
-                command = [program, "shader", "--model", name, "--target", "python", "--arithmetic", arithmetic]
                 with open(os.path.join(folder, file + ".py"), "w") as out:
-                    subprocess.run(command + [part for word in choice.values() for part in ("--sampler", word)], stdout=out, check=True)
+                    out.write(printed(program, name, choice, "--arithmetic", arithmetic))
                 found[arithmetic] = Subject(name, choice, importlib.import_module(file))
+            calls = [part for call in ("material", "eval_hit", "sample_hit") for part in ("--call", call)]
+            if printed(program, name, choice, *calls) != source_of(hairis.Material(name, **choice))[0]:
+                failures.append(f"{name} {word}: the wheel's source is not that of hairis shader")
             yield found
 
 

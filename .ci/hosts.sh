@@ -1,8 +1,9 @@
 #!/bin/bash
 # Promise: C, C++, Python and Mitsuba are hosts of the kernels. The C library answers as Rust does, to the bit, for every model and entry
 # point; refuses without writing; reads and writes nothing beyond its columns, under AddressSanitizer and valgrind; exports its header's
-# names alone; links by CMake, by pkg-config and beside another Rust library. The wheel passes its tests. Models printed for Python have
-# the accuracy of one lane in NumPy and Dr.Jit, and derivatives there. Mitsuba's own chi-square test accepts every sampler.
+# names alone; links by CMake, by pkg-config and beside another Rust library. The wheel passes its tests, those of its modules for Dr.Jit
+# and JAX included. Models printed for Python have the accuracy of one lane in NumPy and Dr.Jit, and derivatives there, and the wheel has
+# the same source. Mitsuba's own chi-square test accepts every sampler.
 #
 # Needs cargo, gcc, and Debian's packages and PyPI for the rest. Prints the time of each part, and the sizes.
 set -euo pipefail
@@ -162,20 +163,21 @@ gcc -std=c11 "${strict[@]}" "$capi/tests/two.c" -o "$work/two" "$other" "$hairis
 gcc -std=c11 "${strict[@]}" "$capi/tests/two.c" -o "$work/two" "$hairis" "$other" -lpthread -ldl -lm
 "$work/two"
 
+# The newest LLVM: version 15 does not compile Dr.Jit's code for AVX-512.
+DRJIT_LIBLLVM_PATH=$(ls /usr/lib/*/libLLVM.so.[0-9]* 2> /dev/null | sort -V | tail -1)
+export DRJIT_LIBLLVM_PATH
 part wheel
 "$python" -m pip install -q --force-reinstall --no-deps "$work"/wheels/*.whl
 "$python" -m pytest -q -p no:cacheprovider variants/python/tests
 (cd variants/python && MYPYPATH=tests "$work/venv/bin/mypy" --strict --cache-dir "$work/mypy" hairis tests examples)
 "$python" variants/python/tests/same_as_c.py "$prefix/lib/libhairis.so"
 
-# The newest LLVM: version 15 does not compile Dr.Jit's code for AVX-512.
-llvm=$(ls /usr/lib/*/libLLVM.so.[0-9]* 2> /dev/null | sort -V | tail -1)
 part 'NumPy and Dr.Jit'
-HAIRIS_HITS=100 DRJIT_LIBLLVM_PATH=$llvm "$python" .ci/frameworks.py "$(.ci/release.sh)/hairis" numpy drjit > "$work/frameworks.log" ||
+HAIRIS_HITS=100 "$python" .ci/frameworks.py "$(.ci/release.sh)/hairis" numpy drjit > "$work/frameworks.log" ||
   { grep FAIL "$work/frameworks.log"; exit 1; }
 
 part Mitsuba
-(cd "$capi/examples/mitsuba" && DRJIT_LIBLLVM_PATH=$llvm "$python" chi2.py 1000000)
+(cd "$capi/examples/mitsuba" && "$python" chi2.py 1000000)
 "$capi/examples/mitsuba/build.sh" "$python" "$prefix" "$work/plugins"
 (cd "$work" && "$python" "$capi/examples/mitsuba/pixels.py" "$work/plugins")
 
@@ -183,5 +185,5 @@ part figures
 printf 'libhairis.so %s bytes, libhairis.a %s, wheel %s\n' "$(stat -c %s "$prefix/lib/libhairis.so.1.0.0")" \
   "$(stat -c %s "$prefix/lib/libhairis.a")" "$(stat -c %s "$work"/wheels/*.whl)"
 [ "$(stat -c %s "$prefix/lib/libhairis.so.1.0.0")" -le 2500000 ] || { echo "FAIL the library has more than 2.5 MB"; exit 1; }
-[ "$(stat -c %s "$work"/wheels/*.whl)" -le 1500000 ] || { echo "FAIL the wheel has more than 1.5 MB"; exit 1; }
+[ "$(stat -c %s "$work"/wheels/*.whl)" -le 1700000 ] || { echo "FAIL the wheel has more than 1.7 MB"; exit 1; }
 echo "hosts passed in ${SECONDS}s"

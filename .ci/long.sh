@@ -59,18 +59,20 @@ wheel() {
   (cd variants/python && "$work/venv/bin/maturin" build -q --locked --features every-sampler --target-dir "$work/wheel" --out "$work/every") &&
     "$python" -m pip install -q --force-reinstall --no-deps "$work"/every/*.whl || return 1
   llvm=$(ls /usr/lib/*/libLLVM.so.[0-9]* 2> /dev/null | sort -V | tail -1)
-  "$python" -m pytest -q -p no:cacheprovider variants/python/tests &&
+  DRJIT_LIBLLVM_PATH=$llvm "$python" -m pytest -q -p no:cacheprovider variants/python/tests &&
     (cd variants/capi/examples/mitsuba && DRJIT_LIBLLVM_PATH=$llvm "$python" chi2.py | tee "$work/chi2.log") &&
     grep -q '88 of 88 pass' "$work/chi2.log"
 }
 wheel || { echo "FAIL the wheel with every sampler"; failed=1; }
-# Models printed for Python in every framework, on 10,000 hits of 20 materials, for the wheel of .ci/hosts.sh. PyTorch of PyPI brings CUDA, and takes 5 GB.
+# Models printed for Python in every framework, on 10,000 hits of 20 materials, for the wheel of .ci/hosts.sh, and the wheel's module for PyTorch.
+# PyTorch of PyPI brings CUDA, and takes 5 GB.
 frameworks() {
   local work python llvm program
   work=$(realpath -m "${CARGO_TARGET_DIR:-target}")/hosts
   python=$work/venv/bin/python
   llvm=$(ls /usr/lib/*/libLLVM.so.[0-9]* 2> /dev/null | sort -V | tail -1)
   program=$(.ci/release.sh) && "$python" -m pip install -q torch && "$python" -m pip install -q --force-reinstall --no-deps "$work"/wheels/*.whl &&
+    "$python" -m pytest -q -p no:cacheprovider variants/python/tests/test_frameworks.py -k torch &&
     DRJIT_LIBLLVM_PATH=$llvm "$python" .ci/frameworks.py "$program/hairis" numpy drjit torch jax
 }
 frameworks || { echo "FAIL models in frameworks of arrays"; failed=1; }

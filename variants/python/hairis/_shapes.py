@@ -31,18 +31,23 @@ def _read(name: str, value: Any, shape: str) -> Array:
     return single
 
 
+def common(shapes: dict[str, tuple[int, ...]]) -> tuple[int, ...]:
+    """Returns the shape that all arguments broadcast to, or raises an exception that names the first that does not fit those before it."""
+    whole: tuple[int, ...] = ()
+    for name, shape in shapes.items():
+        try:
+            whole = np.broadcast_shapes(whole, shape)
+        except ValueError:
+            raise ValueError(f"{name} must broadcast with the arguments before it, of shape {whole}, got {shape}") from None
+    return whole
+
+
 def call(function: Callable[..., dict[str, Array]], results: tuple[str, ...], vectors: dict[str, Any], h: Any = None) -> dict[str, Array]:
     """Calls a function on columns, and returns these results in the shape that the arguments broadcast to."""
     arrays = {name: _read(name, value, "(..., 3)") for name, value in vectors.items()}
     if h is not None:
         arrays["h"] = _read("h", h, "(...)")
-    shape: tuple[int, ...] = ()
-    for name, array in arrays.items():
-        own = array.shape if name == "h" else array.shape[:-1]
-        try:
-            shape = np.broadcast_shapes(shape, own)
-        except ValueError:
-            raise ValueError(f"{name} must broadcast with the arguments before it, of shape {shape}, got {own}") from None
+    shape = common({name: array.shape if name == "h" else array.shape[:-1] for name, array in arrays.items()})
     columns: dict[str, Array] = {}
     for name, array in arrays.items():
         if name == "h":

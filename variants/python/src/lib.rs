@@ -10,6 +10,7 @@ mod fields;
 mod gradients;
 mod hits;
 mod material;
+mod program;
 mod shapes;
 mod text;
 mod values;
@@ -99,5 +100,6 @@ fn _hairis(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Material>()?;
     module.add_class::<Bsdf>()?;
     module.add_function(wrap_pyfunction!(level, module)?)?;
+    module.add_function(wrap_pyfunction!(program::program, module)?)?;
     module.add_function(wrap_pyfunction!(models, module)?)
 }

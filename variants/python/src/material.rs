@@ -79,6 +79,11 @@ impl Material {
         })
     }
 
+    /// Returns the model and the values of its fields.
+    pub(crate) const fn model_and_values(&self) -> (ModelId, &Values) {
+        (self.id, &self.values)
+    }
+
     /// Returns the fields that have a value.
     fn given(&self) -> Vec<(&'static str, Value)> {
         fields_of(&self.values.map(double))

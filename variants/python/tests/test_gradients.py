@@ -1,9 +1,7 @@
-"""Tests of derivatives against differences and against the reverse mode of JAX."""
+"""Tests of derivatives against differences."""
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
 from typing import Any
 
 import hairis
@@ -82,24 +80,3 @@ def test_ends() -> None:
     step = 1e-3
     want = (4 * loss(step) - loss(2 * step) - 3 * loss(0.0)) / (2 * step)
     assert np.ravel(d_fields["sigma_a"])[0] == pytest.approx(want, rel=0.01)
-
-
-def test_jax(capsys: pytest.CaptureFixture[str]) -> None:
-    """The gradients of the example agree with differences along a direction, and the example recovers the widths that it hid."""
-    jax = pytest.importorskip("jax")
-    sys.path.insert(0, str(Path(__file__).parent.parent / "examples"))
-    import jax_hair
-
-    wo, wi = jax_hair.directions(2000, 3), jax_hair.directions(2000, 4)
-    fields = hairis.Material("chiang", "brown").fields
-    numbers = {name: jax.numpy.asarray(value) for name, value in fields.items() if not isinstance(value, str)}
-
-    def loss(scale: Any) -> Any:
-        return jax_hair.scatter("chiang", {**numbers, "beta_m": scale * numbers["beta_m"]}, wo, wi).sum()
-
-    step = 1e-2
-    want = (loss(1 + step) - loss(1 - step)) / (2 * step)
-    assert float(jax.grad(loss)(1.0)) == pytest.approx(float(want), rel=0.01)
-    jax_hair.main()
-    *_, found, hidden = [line.split("[")[1].rstrip("]").split() for line in capsys.readouterr().out.splitlines()]
-    assert np.allclose(np.asarray(found, float), np.asarray(hidden, float), rtol=1e-2)
