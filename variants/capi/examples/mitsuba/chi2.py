@@ -1,4 +1,4 @@
-"""Mitsuba's chi-square test of the BSDF in hair_bsdf.py: every model and sampler, two presets, four directions, with one level of .01
+"""Mitsuba's chi-square test of the BSDF in hairis.mitsuba: every model and sampler, two presets, four directions, with one level of .01
 over all; then controls, densities 5% too large or too small, which must be refused. chi2.py [SAMPLES]"""
 
 import sys
@@ -9,8 +9,7 @@ import mitsuba as mi
 import numpy as np
 
 mi.set_variant("llvm_ad_rgb")
-import hair_bsdf  # noqa: E402, F401
-import hairis  # noqa: E402
+import hairis.mitsuba  # noqa: E402
 from mitsuba.chi2 import BSDFAdapter, ChiSquareTest  # noqa: E402
 
 

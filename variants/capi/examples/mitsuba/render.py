@@ -1,11 +1,10 @@
 """A tuft of hair by Mitsuba: render.py PICTURE [VARIANT]. VARIANT is scalar_rgb, by the plugin in ./plugins, which is the default, or a JIT
-variant, by the class of hair_bsdf.py. Hair goes to two files: tuft.txt has the control points, tuft-lines.txt the same curves as straight
+variant, by the class of hairis.mitsuba, which has energy "raw". Hair goes to two files: tuft.txt has the control points, tuft-lines.txt the same curves as straight
 segments for other renderers."""
 
 import sys
 import time
 
-import drjit as dr
 import mitsuba as mi
 import numpy as np
 
@@ -19,10 +18,7 @@ def set_variant(variant):
     if variant.startswith("scalar"):
         mi.file_resolver().append(".")  # Mitsuba looks for plugins/hairis.so.
     else:
-        # NumPy cannot be called from loops that are recorded.
-        dr.set_flag(dr.JitFlag.SymbolicLoops, False)
-        dr.set_flag(dr.JitFlag.SymbolicCalls, False)
-        import hair_bsdf  # noqa: F401
+        import hairis.mitsuba  # noqa: F401
 
 
 def tuft():
