@@ -12,6 +12,9 @@ Directions point away from the fibre, in its frame: u runs along the fibre from 
 towards the viewer and `wi` towards the light. `eval`, `pdf`, `eval_pdf` and `sample` take arrays of any shape whose last dimension is the
 component, and their shapes broadcast. The calls named after columns and hits are faster: columns are float32 of shape (3, N) or (N,),
 C-contiguous and aligned, and nothing is converted. Calls release the interpreter's lock, so that the caller may run them in threads.
+
+`hairis.torch`, `hairis.jax` and `hairis.drjit` have these calls over arrays of a framework, which differentiates them, and `hairis.mitsuba` is a
+BSDF of Mitsuba 3. Each is imported by its name.
 """
 
 from ._hairis import Bsdf, Material, level, models

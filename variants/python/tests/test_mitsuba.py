@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -114,3 +115,16 @@ def test_derivatives_of_a_picture(mi: Any, tmp_path: Path) -> None:
             assert once[i] == pytest.approx(difference, rel=0.05, abs=1e-3), (key, i)
         params[key] = type(params[key])(*before.tolist())
         params.update()
+
+
+def test_the_example_recovers_the_hair_of_a_picture(tmp_path: Path) -> None:
+    pytest.importorskip("mitsuba")
+    example = Path(__file__).parent.parent / "examples" / "mitsuba_fit.py"
+    assert len(example.read_text().splitlines()) <= 30
+    picture = tmp_path / "fit.png"
+    run = subprocess.run([sys.executable, example, picture], capture_output=True, text=True)
+    assert run.returncode == 0 and picture.exists(), run.stderr
+    found, hidden = zip(*(re.findall(r"\[([^]]*)\]", line) for line in run.stdout.splitlines()))
+    numbers = [np.array(" ".join(part).split(), float) for part in (found, hidden)]
+    assert numbers[0].shape == (5,)
+    np.testing.assert_allclose(numbers[0], numbers[1], rtol=0, atol=0.03)
