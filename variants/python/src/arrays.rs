@@ -1,13 +1,13 @@
 //! Columns of NumPy arrays, which are borrowed and never copied.
 
-use crate::values::wrong;
+use crate::values::{description, wrong};
 use core::fmt::{self, Display, Formatter};
 use core::ops::Range;
 use core::ptr;
 use hairis_capi::layout::{Evals, Samples};
 use numpy::{
     BorrowError, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn,
-    PyReadwriteArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
+    PyReadwriteArrayDyn, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -73,17 +73,6 @@ pub(crate) fn samples(outputs: &Outputs<'_, 5>) -> Samples {
         weight,
         lobe: lobe[0],
     }
-}
-
-/// Describes a value in exceptions: an array by its numbers, anything else by its type.
-pub(crate) fn description(of: &Bound<'_, PyAny>) -> String {
-    let Ok(array) = of.cast::<PyUntypedArray>() else {
-        return of.get_type().to_string();
-    };
-    let (dtype, rank) = (array.dtype(), array.ndim());
-    let lengths: Vec<_> = array.shape().iter().map(usize::to_string).collect();
-    let comma = if rank == 1 { "," } else { "" };
-    format!("{dtype} of shape ({}{comma})", lengths.join(", "))
 }
 
 /// Makes the exception for an array of another type, shape or layout than required.

@@ -2,7 +2,7 @@
 
 use crate::arrays::{Detached, EVALS, Input, Outputs, SAMPLES, evals, samples};
 use crate::fields::double;
-use crate::material::Material;
+use crate::hair::Material;
 use crate::shapes::{EVAL, PDF, SAMPLE, any_shape, one, pair};
 use crate::text::literal;
 use crate::values::{items, vector, word};
@@ -319,7 +319,7 @@ impl Bsdf {
 
     fn __repr__(&self) -> String {
         let [u, v, w] = self.wo.map(|x| literal(double(x)));
-        let (material, h) = (self.material.get().__repr__(), literal(double(self.h)));
+        let (material, h) = (self.material.get().expression(), literal(double(self.h)));
         let lobes = if self.is_whole() {
             String::new()
         } else {

@@ -8,6 +8,7 @@ mod arrays;
 mod bsdf;
 mod fields;
 mod gradients;
+mod hair;
 mod hits;
 mod material;
 mod program;
@@ -17,9 +18,9 @@ mod values;
 
 use bsdf::Bsdf;
 use fields::double;
+use hair::Material;
 use hairis::simd::Level;
 use hairis_variants::{Kind, ModelId};
-use material::Material;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

@@ -2,93 +2,18 @@
 
 use crate::arrays::{EVALS, Outputs, SAMPLES, evals, samples};
 use crate::bsdf::Bsdf;
-use crate::fields::{Value, check, dict_of, double, fields_of, no_error};
+use crate::fields::{Value, dict_of, double, fields_of};
 use crate::gradients;
+use crate::hair::Material;
 use crate::hits::{all, call, inputs};
 use crate::shapes::{EVAL, PDF, SAMPLE, any_shape, one, pair};
 use crate::text;
 use crate::values::{CONSERVING, energy_of, number, params_of, vector, word};
-use hairis_capi::layout::{MATERIAL_SIZE, Params, RawMaterial};
 use hairis_capi::{hits, setup};
 use hairis_materials::MaterialSpec;
-use hairis_variants::{ModelId, Values};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
-
-/// Hair: a model with checked parameters.
-///
-/// Parameters
-/// ----------
-/// model : str
-///     "gaussian", "cauchy", "kajiya-kay" or "chiang"; `hairis.models()` lists them with their fields.
-/// preset : str, optional
-///     Name of values for all fields: "brown", "blond" and so on. Without a preset, fields have the model's defaults.
-/// energy : {"conserving", "raw", "scaled"}
-///     With "conserving", no direction returns more light than arrives. With "raw", the model stays as it is. With "scaled", the
-///     model is darker but stays reciprocal.
-/// **fields
-///     Values in place of the preset's values: numbers, sequences of numbers, or words. Angles are in radians, colours in linear RGB.
-///     The field "sampler" of "gaussian" and "cauchy" and the field "select" of "chiang" choose how directions are sampled.
-///
-/// Raises
-/// ------
-/// ValueError
-///     If a name does not exist or a value is out of its range. The message lists the valid names, or states the rule.
-///
-/// Examples
-/// --------
-/// >>> hair = hairis.Material("gaussian", "brown", sampler="matched", i_g=0.5)
-/// >>> hair.fields["i_g"]
-/// 0.5
-/// >>> eval(repr(hair)) == hair
-/// True
-/// >>> hairis.Material("gaussian", beta=(0.1, 0.0, 0.2))
-/// Traceback (most recent call last):
-/// ValueError: beta[1] must be a width in [1e-4, pi] rad, got 0
-#[pyclass(frozen, module = "hairis")]
-pub(crate) struct Material {
-    pub(crate) raw: RawMaterial,
-    pub(crate) id: ModelId,
-    values: Values,
-    energy: &'static str,
-}
-
-impl Material {
-    /// Makes a material from parameters, and from an energy with its code.
-    fn of(params: &Params, (energy, code): (&'static str, u32)) -> PyResult<Self> {
-        let mut error = no_error();
-        let mut raw = RawMaterial {
-            head: [0; 4],
-            body: [0; MATERIAL_SIZE - 16],
-        };
-        // SAFETY: the arguments are of this call.
-        let (status, read) = unsafe {
-            let status = setup::hairis_material_init(&raw mut raw, params, code, &raw mut error);
-            (status, setup::values_of(params, core::ptr::null_mut()))
-        };
-        check(status, &error)?;
-        let Ok((id, values)) = read else {
-            unreachable!("the material is made of them")
-        };
-        Ok(Self {
-            raw,
-            id,
-            values,
-            energy,
-        })
-    }
-
-    /// Returns the model and the values of its fields.
-    pub(crate) const fn model_and_values(&self) -> (ModelId, &Values) {
-        (self.id, &self.values)
-    }
-
-    /// Returns the fields that have a value.
-    fn given(&self) -> Vec<(&'static str, Value)> {
-        fields_of(&self.values.map(double))
-    }
-}
 
 /// Reads the argument `model`.
 fn model_of(value: &Bound<'_, PyAny>) -> PyResult<String> {
@@ -471,8 +396,8 @@ impl Material {
         Ok((columns, dict_of(py, numbers)?))
     }
 
-    pub(crate) fn __repr__(&self) -> String {
-        text::call(self.id, self.energy, &self.given())
+    fn __repr__(&self) -> String {
+        self.expression()
     }
 
     fn __eq__(&self, other: &Self) -> bool {

@@ -1,7 +1,7 @@
 //! Programs of the models over arrays, in Python.
 
 use crate::fields::double;
-use crate::material::Material;
+use crate::hair::Material;
 use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -1,6 +1,5 @@
 //! Conversion of parameters and their values from Python to the C interface.
 
-use crate::arrays::description;
 use crate::fields::{check, no_error};
 use core::ffi::CStr;
 use core::fmt::Display;
@@ -90,6 +89,17 @@ pub(crate) fn params_of(
         set(&mut params, field, &value)?;
     }
     Ok(params)
+}
+
+/// Describes a value in exceptions: an array by its numbers, anything else by its type.
+pub(crate) fn description(of: &Bound<'_, PyAny>) -> String {
+    let Ok(array) = of.cast::<PyUntypedArray>() else {
+        return of.get_type().to_string();
+    };
+    let (dtype, rank) = (array.dtype(), array.ndim());
+    let lengths: Vec<_> = array.shape().iter().map(usize::to_string).collect();
+    let comma = if rank == 1 { "," } else { "" };
+    format!("{dtype} of shape ({}{comma})", lengths.join(", "))
 }
 
 /// Makes the exception for a value of another type than its argument or field.
