@@ -328,7 +328,7 @@ impl Kernel for Math {
             c.store(),
             d.store(),
             (e + f).store(),
-            (tan / over).store(),
+            L::quotient(tan, over).store(),
             math::half_angle(x, y).store(),
             math::sin_half_turn(x).store(),
             math::log2(above).store(),
