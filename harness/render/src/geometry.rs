@@ -3,6 +3,7 @@
 mod bounds;
 mod groom;
 mod mesh;
+mod spiral;
 mod spline;
 mod strands;
 
@@ -10,5 +11,6 @@ pub use bounds::Bounds;
 pub(crate) use groom::random::{Random, Stream};
 pub use groom::{Groom, HEAD, Kind};
 pub use mesh::Mesh;
+pub(crate) use spiral::golden_spiral;
 pub use spline::{Basis, Flattening, Spline};
 pub use strands::{Builder, GeometryError, Strands};

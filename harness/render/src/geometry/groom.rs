@@ -242,23 +242,12 @@ impl Groom {
     }
 
     fn check(&self) -> Result<(), GeometryError> {
-        let counts = [
-            ("strands", self.strands, 1 << 24),
-            ("nodes", self.nodes, 1024),
-            ("clumps", self.clumps, 1 << 24),
-        ];
-        for (name, value, most) in counts {
-            let least = if name == "nodes" { 2 } else { 1 };
-            if !(least..=most).contains(&value) {
-                return Err(GeometryError::Count {
-                    name,
-                    value,
-                    least,
-                    most,
-                });
-            }
-        }
-        let ranges = [
+        GeometryError::check_counts([
+            ("strands", self.strands, 1, 1 << 24),
+            ("nodes", self.nodes, 2, 1024),
+            ("clumps", self.clumps, 1, 1 << 24),
+        ])?;
+        GeometryError::check_settings([
             ("length", self.length, 1e-3, 1e4),
             ("length_spread", self.length_spread, 0.0, 0.4),
             ("radius", self.radius, 1e-6, 1e3),
@@ -269,17 +258,6 @@ impl Groom {
             ("frizz", self.frizz, 0.0, 1e3),
             ("gravity", self.gravity, 0.0, 1e2),
             ("lift", self.lift, 0.0, 1.0),
-        ];
-        for (name, value, least, most) in ranges {
-            if !(least..=most).contains(&value) {
-                return Err(GeometryError::Setting {
-                    name,
-                    value,
-                    least,
-                    most,
-                });
-            }
-        }
-        Ok(())
+        ])
     }
 }

@@ -328,6 +328,42 @@ pub enum GeometryError {
     TooMany,
 }
 
+impl GeometryError {
+    /// Checks counts, each with its name, its least and its largest value.
+    pub(crate) fn check_counts<const N: usize>(
+        counts: [(&'static str, usize, usize, usize); N],
+    ) -> Result<(), Self> {
+        for (name, value, least, most) in counts {
+            if !(least..=most).contains(&value) {
+                return Err(Self::Count {
+                    name,
+                    value,
+                    least,
+                    most,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks settings, each with its name, its least and its largest value. NaN lies in no range.
+    pub(crate) fn check_settings<const N: usize>(
+        settings: [(&'static str, f32, f32, f32); N],
+    ) -> Result<(), Self> {
+        for (name, value, least, most) in settings {
+            if !(least..=most).contains(&value) {
+                return Err(Self::Setting {
+                    name,
+                    value,
+                    least,
+                    most,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
 impl fmt::Display for GeometryError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

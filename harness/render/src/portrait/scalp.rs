@@ -2,7 +2,7 @@
 
 use super::bust::{self, CRANIUM};
 use super::style::Style;
-use crate::geometry::Random;
+use crate::geometry::{Random, golden_spiral};
 use core::f32::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 
@@ -20,8 +20,6 @@ const HAIRLINE: [[f32; 2]; 9] = [
 ];
 /// Width in degrees over which the hairline thins out.
 const EDGE: f32 = 7.0;
-/// Azimuth between successive roots, pi (3 - sqrt 5), which spreads the roots evenly.
-const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 /// Direction of the whorl, from which hair falls to all sides: the rear end of the parting.
 const WHORL: Vec3 = Vec3::new(0.12, 0.85, -0.51);
 /// Elevation of the front end of the parting in degrees.
@@ -89,14 +87,7 @@ pub(super) fn roots(count: usize, random: &mut Random) -> Vec<Root> {
 /// Returns a direction: `index` of `count` on a golden spiral, jittered.
 fn spiral(index: usize, count: usize, jitter: f32) -> Vec3 {
     let y = 1.0 - 2.0 * (index as f32 + jitter) / count as f32;
-    #[expect(clippy::cast_possible_truncation, reason = "rounded to the nearest")]
-    let azimuth = (GOLDEN_ANGLE * index as f64 % core::f64::consts::TAU) as f32;
-    let across = (1.0 - y * y).max(0.0).sqrt();
-    Vec3::new(
-        across * libm::cosf(azimuth),
-        y,
-        across * libm::sinf(azimuth),
-    )
+    golden_spiral(index, y)
 }
 
 /// Returns the unit direction along the scalp in which hair is combed at a root: away from the parting, a great circle from the

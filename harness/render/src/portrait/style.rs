@@ -134,21 +134,11 @@ impl Style {
     ///
     /// Returns an error that names the first measure that does not, with its value and its range.
     pub fn check(&self) -> Result<(), GeometryError> {
-        let counts = [
-            ("locks", self.locks, 10_000),
-            ("clumps", self.clumps, 100_000),
-        ];
-        for (name, value, most) in counts {
-            if !(1..=most).contains(&value) {
-                return Err(GeometryError::Count {
-                    name,
-                    value,
-                    least: 1,
-                    most,
-                });
-            }
-        }
-        let measures = [
+        GeometryError::check_counts([
+            ("locks", self.locks, 1, 10_000),
+            ("clumps", self.clumps, 1, 100_000),
+        ])?;
+        GeometryError::check_settings([
             ("length", self.length, 2.0, 60.0),
             ("length_spread", self.length_spread, 0.0, 0.3),
             ("hem", self.hem, -60.0, 20.0),
@@ -167,18 +157,7 @@ impl Style {
             ("coherence", self.coherence, 0.0, 1.0),
             ("frizz", self.frizz, 0.0, 2.0),
             ("flyaways", self.flyaways, 0.0, 0.5),
-        ];
-        for (name, value, least, most) in measures {
-            if !(least..=most).contains(&value) {
-                return Err(GeometryError::Setting {
-                    name,
-                    value,
-                    least,
-                    most,
-                });
-            }
-        }
-        Ok(())
+        ])
     }
 
     /// Returns the distance of nodes along a strand in centimetres: a sixteenth of a turn of a curl, or less often in waves, whose

@@ -2,6 +2,7 @@
 
 use super::random::{Random, Stream};
 use super::{Groom, HEAD};
+use crate::geometry::spiral::golden_spiral;
 use core::f32::consts::TAU;
 use glam::Vec3;
 
@@ -15,8 +16,6 @@ const DEPTH: f32 = 0.06;
 const PARTING: f32 = 0.25;
 /// Length of guides, relative to that of strands.
 const GUIDE_LENGTH: f32 = 1.05;
-/// Azimuth between successive roots, pi (3 - sqrt 5), which spreads the roots evenly.
-const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
 /// Clumps of a head of hair, ready for strands to be grown.
 #[derive(Clone, Debug)]
@@ -119,14 +118,7 @@ impl HeadGroom {
 /// Returns a root on the unit sphere: `index` of `count` on a golden spiral, jittered.
 fn root(index: usize, count: usize, random: &mut Random) -> Vec3 {
     let y = 1.0 - 2.0 * COVERED * (index as f32 + random.uniform()) / count as f32;
-    #[expect(clippy::cast_possible_truncation, reason = "rounded to the nearest")]
-    let azimuth = (GOLDEN_ANGLE * index as f64 % core::f64::consts::TAU) as f32;
-    let across = (1.0 - y * y).max(0.0).sqrt();
-    Vec3::new(
-        across * libm::cosf(azimuth),
-        y,
-        across * libm::sinf(azimuth),
-    )
+    golden_spiral(index, y)
 }
 
 /// Returns the side of the parting to which combed hair falls: 1 or -1, along x.
