@@ -77,8 +77,8 @@ fn record(path: &str) -> Result<Vec<String>, Box<dyn Error>> {
         fs::write(path, &text)?;
     }
     let mut all = Vec::new();
-    macro_rules! visit {
-        ($Function:ident) => {
+    macro_rules! visits {
+        ($Function:ident) => {{
             type F = functions::$Function;
             if !text.contains(&format!("\n\"{}\",", F::NAME)) {
                 let found = sweep::<F>(Choice {
@@ -91,11 +91,6 @@ fn record(path: &str) -> Result<Vec<String>, Box<dyn Error>> {
                 writeln!(fs::OpenOptions::new().append(true).open(path)?, "{rows}")?;
                 all.extend(faults::<F>(&found));
             }
-        };
-    }
-    macro_rules! visits {
-        ($name:ident) => {{
-            visit!($name);
         }};
     }
     each_function!(visits);

@@ -36,7 +36,7 @@ impl Worst {
     }
 }
 
-/// What a sweep found on one lane and, second, on the levels that fuse. The numbers of the second are 0 where there is none.
+/// Findings of a sweep, by arithmetic: one lane, then the levels that fuse. Without such a level the second are those of one lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Found {
     pub(crate) arguments: u64,
