@@ -16,22 +16,6 @@ use hairis_instruments::pixels::LayerFlag;
 use hairis_instruments::shard::Shard;
 use std::path::PathBuf;
 
-/// Text that `hairis-render` prints without arguments.
-pub const ENTRANCE: &str = "\
-hairis-render renders hair, and measures on pictures what models and samplers are worth.
-
-  render    a scene, or hair of a file: an EXR file with a PNG beside it
-  figures   samplers on every scene, at equal samples and in equal time: one page
-  fit       the material of the hair in a picture
-  merge     one picture from the parts that several machines have rendered
-
-Try:
-  hairis-render render head --model chiang --integrator path --spp 16
-  hairis-render figures --quick
-
-hairis-render COMMAND --help lists the flags of a command.
-";
-
 /// Renders hair to measure scattering models and their samplers on images.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "hairis-render", version, arg_required_else_help = false)]

@@ -39,11 +39,12 @@ pub(super) struct Traits {
 
 impl Traits {
     /// Draws the traits of a guide at a root.
-    pub(super) fn draw(root: &Root, random: &mut Random) -> Self {
+    pub(super) fn draw(style: &Style, root: &Root, random: &mut Random) -> Self {
         let [lowest, highest] = ROOTS;
         let height = (root.position.y - lowest) / (highest - lowest);
         Self {
-            parting: 0.25 * random.normal_cut(),
+            // No parting of curls is a line.
+            parting: (0.2 + style.curl_radius * style.roundness) * random.normal_cut(),
             layer: (0.15 + 0.75 * height + 0.12 * random.normal_cut()).clamp(0.0, 1.0),
             bend: 0.012 * Vec3::new(random.normal_cut(), 0.0, random.normal_cut()),
             lean: Vec3::ZERO,

@@ -41,7 +41,7 @@ pub(super) fn strands(style: &Style, count: usize) -> Vec<Vec<Node>> {
         .enumerate()
         .map(|(index, root)| {
             let mut random = random(Stream::Clump(index));
-            let traits = Traits::draw(&root, &mut random);
+            let traits = Traits::draw(style, &root, &mut random);
             (
                 root,
                 grow(style, &root, &traits, 1.2 * style.length, style.hem - 4.0),
@@ -79,7 +79,7 @@ fn nearest(places: impl Iterator<Item = Vec3>, place: Vec3) -> usize {
 
 impl Clump {
     fn new(style: &Style, root: Root, locks: &[(Root, Vec<Vec3>)], random: &mut Random) -> Self {
-        let traits = Traits::draw(&root, random);
+        let traits = Traits::draw(style, &root, random);
         let mut guide = grow(style, &root, &traits, 1.2 * style.length, style.hem - 4.0);
         let lock = nearest(locks.iter().map(|(root, _)| root.position), root.position);
         draw(&mut guide, &locks[lock].1, style.step(), style.lock);
