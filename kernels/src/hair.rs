@@ -133,6 +133,11 @@ impl<B: Bell> Model for Published<B> {
         AlbedoFit::of::<B>(&material.lobes)
     }
 
+    #[inline]
+    fn raw_fit<C: Scalar + From<f32>>() -> AlbedoFit<C> {
+        AlbedoFit::raw()
+    }
+
     #[inline(always)]
     fn unfit<L: Lanes, C: Broadcast<L>>(fit: &AlbedoFit<C>) -> L {
         fit.warp.refused.lanes()

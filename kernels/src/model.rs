@@ -123,10 +123,18 @@ pub trait Model: Copy {
 
     /// Computes the constants of a material that [`fitted`](Self::fitted) reads.
     ///
-    /// Provided: zeros.
+    /// Provided: those of [`raw_fit`](Self::raw_fit).
     #[inline]
     fn fit(_material: &Self::Material<f32>) -> Self::Fit<f32> {
-        LaneStruct::make(&Path::Root, &mut |_| 0.0)
+        Self::raw_fit()
+    }
+
+    /// Returns the constants with which [`fitted`](Self::fitted) changes nothing, for materials that conserve no energy.
+    ///
+    /// Provided: zeros.
+    #[inline]
+    fn raw_fit<C: Scalar + From<f32>>() -> Self::Fit<C> {
+        LaneStruct::make(&Path::Root, &mut |_| 0.0.into())
     }
 
     /// Scales the shading point like [`conserving`](Self::conserving), but reads the constants of the material instead of

@@ -61,11 +61,10 @@ pub(super) fn fitted<L: Lanes, C: Broadcast<L>>(
     let (sin, cos) = (view.half_sin_theta_o.lanes(), view.half_cos_theta_o.lanes());
     let upper = c(0.0).lt(sin);
     let near = L::select(upper, fit.warp.near[1].lanes(), fit.warp.near[0].lanes());
-    // `x` is `root / below`. For NaN `min` returns its second operand. The fit of a raw material has 0 for `near`, and `root` is 0 at the
-    // poles.
+    // `x` is `root / below`. For NaN `min` returns its second operand. The divisor is above 0, because `near` is.
     let below = sin.abs() + 0.5;
     let root = (cos * below).sqrt();
-    let reach = near.mul_add(below, root).max(c(f32::MIN_POSITIVE));
+    let reach = near.mul_add(below, root);
     let v = L::quotient(root * (near + 1.0), reach).min(one);
     let piece = L::Index::search(v, [c(0.25), c(0.5), c(0.75)], PIECES - 1);
     let t = v.mul_add(c(8.0), piece.to_number().mul_add(c(-2.0), c(-1.0)));

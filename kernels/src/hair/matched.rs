@@ -194,6 +194,11 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
         AlbedoFit::of::<B>(&material.lobes)
     }
 
+    #[inline]
+    fn raw_fit<C: Scalar + From<f32>>() -> AlbedoFit<C> {
+        AlbedoFit::raw()
+    }
+
     #[inline(always)]
     fn unfit<L: Lanes, C: Broadcast<L>>(fit: &AlbedoFit<C>) -> L {
         fit.warp.refused.lanes()

@@ -4,7 +4,7 @@ use crate::handle::bsdf::{Bsdf, Bsdf8};
 use crate::handle::material::{Material, Material8};
 use crate::model::Model;
 use crate::model::conserving::{Conserving, ConservingMaterial};
-use crate::simd::{Broadcast, Kernel, LaneStruct, Lanes, Path};
+use crate::simd::{Broadcast, Kernel, Lanes};
 use wide::f32x8;
 
 impl<M: Model> Bsdf<M> {
@@ -112,8 +112,7 @@ macro_rules! from_raw_material {
             fn from(raw: $Handle<M>) -> Self {
                 let constants = ConservingMaterial {
                     inner: raw.constants,
-                    // An albedo of 0 everywhere.
-                    fit: LaneStruct::make(&Path::Root, &mut |_| 0.0.into()),
+                    fit: M::raw_fit(),
                 };
                 Self {
                     constants,

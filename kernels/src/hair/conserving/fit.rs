@@ -8,7 +8,7 @@ use crate::model::Bell;
 use crate::simd::portable::Unfused;
 use crate::simd::storage::{ENTRIES, NUMBERS};
 use crate::simd::table::Table;
-use crate::simd::{Broadcast, Lanes, Vec3x};
+use crate::simd::{Broadcast, LaneStruct, Lanes, Path, Scalar, Vec3x};
 use core::f32::consts::{FRAC_PI_2, PI};
 use wide::f32x8;
 
@@ -220,6 +220,15 @@ fn relative_error(c: &[f32; NODES], least: f32) -> f32 {
         f32::quotient(error, factor)
     } else {
         f32::INFINITY
+    }
+}
+
+impl<C: Scalar + From<f32>> AlbedoFit<C> {
+    /// Returns the fit that changes no colour.
+    pub(in crate::hair) fn raw() -> Self {
+        let mut raw: Self = LaneStruct::make(&Path::Root, &mut |_| 0.0.into());
+        raw.warp.near = [1.0.into(); 2];
+        raw
     }
 }
 
