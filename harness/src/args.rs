@@ -6,13 +6,14 @@ use std::path::PathBuf;
 
 /// Text that `hairis` prints without arguments.
 pub const ENTRANCE: &str = "\
-hairis evaluates models of light scattered by hair, and measures what samplers and SIMD are worth.
+hairis evaluates models of light scattered by hair, and measures what samplers
+and SIMD are worth.
 
   eval      values, densities and samples of any model, from lines of JSON
-  compare   speed, accuracy and variance on this machine: 20 seconds with --quick
+  compare   speed, accuracy and variance on this machine: 20 s with --quick
   shader    a model as source of C, WGSL, GLSL, HLSL, Metal, CUDA and others
   fit       the parameters of one model whose look is nearest to that of another
-  study     every sampler over a whole grid of hair and views; merge joins its parts
+  study     every sampler on a grid of hair and views; merge joins its parts
   claims    what the paper claims, each claim with figures
 
 Try:

@@ -7,10 +7,11 @@ use std::process::ExitCode;
 
 /// Text that `hairis-render` prints without arguments.
 const ENTRANCE: &str = "\
-hairis-render renders hair, and measures on pictures what models and samplers are worth.
+hairis-render renders hair, and measures on pictures what models and samplers
+are worth.
 
   render    a scene, or hair of a file: an EXR file with a PNG beside it
-  figures   samplers on every scene, at equal samples and in equal time: one page
+  figures   samplers on every scene, at equal samples and equal time: one page
   fit       the material of the hair in a picture
   merge     one picture from the parts that several machines have rendered
 

@@ -110,3 +110,12 @@ fn help_lists_every_subcommand() {
         assert!(run.out.iter().any(is_of), "{name}: {:?}", run.out);
     }
 }
+
+#[test]
+fn without_arguments_it_shows_what_to_try_on_one_terminal() {
+    let run = super::run(&[], b"");
+    let tries = run.out.iter().filter(|line| line.starts_with("  hairis "));
+    assert_eq!((tries.count(), run.err.len()), (3, 0), "{run:?}");
+    let widest = run.out.iter().map(String::len).max();
+    assert!(run.out.len() <= 20 && widest <= Some(80), "{:?}", run.out);
+}

@@ -112,3 +112,16 @@ fn bad_values_are_refused_in_one_line() {
         "nothing is rendered"
     );
 }
+
+#[test]
+fn without_arguments_it_shows_what_to_try_on_one_terminal() {
+    let folder = TempDir::new().expect("a folder");
+    let text = String::from_utf8(run(&folder, &[""; 0]).stdout).expect("UTF-8");
+    let lines: Vec<&str> = text.lines().collect();
+    let tries = lines
+        .iter()
+        .filter(|line| line.starts_with("  hairis-render "));
+    assert_eq!(tries.count(), 3, "{text}");
+    let widest = lines.iter().map(|line| line.len()).max();
+    assert!(lines.len() <= 20 && widest <= Some(80), "{text}");
+}
