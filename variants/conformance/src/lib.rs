@@ -109,6 +109,19 @@
 //! your own. The properties that integrate the density take two of seven hits per material in the usual size, slices have their shortest
 //! and their longest lengths, and statistical bounds follow from the number of samples.
 //!
+//! # False alarms
+//!
+//! Two properties are random; the others compare numbers within bounds. Either repeats what looks wrong with other numbers, four times as
+//! many, and fails if that looks wrong too:
+//!
+//! | property | looks wrong | fails again | a sound model fails |
+//! |---|---|---|---|
+//! | [`samples_follow_density`](chi_square::samples_follow_density) | 0.01 | 2e-4 | 2e-6 |
+//! | [`resampling_is_unbiased`](resampling::resampling_is_unbiased) | 2e-3 | 2e-3 | 4e-6 |
+//!
+//! With 12 tests of the first and 6 of the second, those of kernels and variants, a round fails by chance 5 times in 100,000. The
+//! repetition costs no power: a density or a mean that is wrong stands out by twice as many standard errors.
+//!
 //! # Limits
 //!
 //! Quadrature may miss a peak of the density that is narrower than a degree if no sample falls there, unless [`Subject::edges`] names the

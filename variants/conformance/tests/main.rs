@@ -68,7 +68,7 @@ fn plain_faults() -> Vec<Fault> {
         lanes::lanes_permute(&Broken(WRONG_PACK)) names "moved";
         lanes::lanes_equal_scalar(&Broken(PACKET_DIFFERS)) names "one lane";
         lanes::lobes_and_albedo_equal_scalar(&Broken(READS_H)) names "h changes";
-        lobes::lobes_sum_to_value(&Broken(LOBE_MISSING)) names "sum of the lobes";
+        lobes::lobes_sum_to_value(&Broken(LOBE_MISSING)) names "`Claims::lobe_sum`";
         lobes::masks_select_lobes(&Broken(MASK_LEAKS)) names "masked lobes scatter";
         bounds::albedo_is_the_integral(&Broken(ALBEDO_TOO_LOW)) names "albedo";
         bounds::white_furnace(&Grey) names "sum of albedos";
