@@ -133,6 +133,7 @@ pub trait Model: Copy {
     ///
     /// Provided: zeros.
     #[inline]
+    #[must_use]
     fn raw_fit<C: Scalar + From<f32>>() -> Self::Fit<C> {
         LaneStruct::make(&Path::Root, &mut |_| 0.0.into())
     }
