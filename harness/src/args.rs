@@ -10,7 +10,7 @@ hairis evaluates models of light scattered by hair, and measures what samplers a
 
   eval      values, densities and samples of any model, from lines of JSON
   compare   speed, accuracy and variance on this machine: 20 seconds with --quick
-  shader    a model as source of C, WGSL, GLSL, HLSL, Metal, CUDA and others
+  shader    a model as source of C, WGSL, GLSL, HLSL, Metal, Slang, CUDA and others
   fit       the parameters of one model whose look is nearest to that of another
   study     every sampler over a whole grid of hair and views; merge joins its parts
   claims    what the paper claims, each claim with figures
