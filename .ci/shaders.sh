@@ -1,6 +1,7 @@
 #!/bin/bash
 # Promise: generated source is what it says. C and C++ (gcc, clang), SPIR-V and GLSL on a Vulkan driver have the bits of one lane
-# for every model, and so has Python with NumPy; plain WGSL has its accuracy there and on WebGPU of headless Chromium, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C
+# for every model, and so have Slang by way of GLSL and Python with NumPy; Slang compiles to SPIR-V, WGSL, HLSL, Metal and CUDA, its
+# compiler finds the derivatives, and the example fits with them; plain WGSL has its accuracy there and on WebGPU of headless Chromium, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C
 # and PTX compile; gradients in C have the bits of the graph; the example draws the same picture on wgpu and on the CPU.
 # Where nvcc and a GPU are, CUDA has the bits of one lane as well.
 # Debian's packages: gcc, g++, clang, glslang-tools, spirv-tools, libvulkan-dev, mesa-vulkan-drivers; node, npm, and Chromium as in
@@ -33,6 +34,10 @@ HAIRIS_CHROMIUM=$(bash -ec '. .ci/unpack; browser; node --version; "$chromium" -
 export HAIRIS_PYTHON=$tools/numpy/bin/python
 [ -x "$HAIRIS_PYTHON" ] || python3 -m venv "$tools/numpy"
 "$HAIRIS_PYTHON" -m pip install -q numpy
+# The compiler of Slang; its device for CPUs compiles by g++.
+export HAIRIS_SLANG=$tools/slang/bin/python
+[ -x "$HAIRIS_SLANG" ] || python3 -m venv "$tools/slang"
+"$HAIRIS_SLANG" -m pip install -q numpy slangpy==0.43.1
 # The programs of the test command, which has compiled them.
 messages=$(cargo test -q --locked --workspace --no-run --message-format=json)
 program() {
@@ -46,6 +51,10 @@ for package in variants/shaders harness/shader; do
   tests=$(program $package)
   (cd $package && "$tests" --ignored --nocapture && "$tests" python)
 done
+fit=$(mktemp -d)
+cargo run -q --locked -p hairis-shader -- --model gaussian --target slang > "$fit/hairis_gaussian.slang"
+(cd "$fit" && "$HAIRIS_SLANG" "$OLDPWD/variants/shaders/examples/slang_fit.py" cpu | tee fit.log && grep -q 'widths \[0.131  *0.0654 *0.262 *\]' fit.log)
+rm -r "$fit"
 # The bounds of the example are those of the driver in software. Mesa asks for XDG_RUNTIME_DIR.
 if [ -n "${VK_DRIVER_FILES:-}" ]; then
   picture=$(mktemp --suffix .png)

@@ -11,7 +11,7 @@ and SIMD are worth.
 
   eval      values, densities and samples of any model, from lines of JSON
   compare   speed, accuracy and variance on this machine: 20 s with --quick
-  shader    a model as source of C, WGSL, GLSL, HLSL, Metal, CUDA and others
+  shader    a model as source of C, WGSL, GLSL, HLSL, Metal, Slang and others
   fit       the parameters of one model whose look is nearest to that of another
   study     every sampler on a grid of hair and views; merge joins its parts
   claims    what the paper claims, each claim with figures

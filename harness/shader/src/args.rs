@@ -63,6 +63,8 @@ pub enum ShaderTarget {
     Hlsl,
     /// The Metal shading language
     Msl,
+    /// Slang, whose compiler differentiates the functions
+    Slang,
     /// Python over arrays of `NumPy`, JAX, `PyTorch` or Dr.Jit, which differentiate it
     Python,
     /// SPIR-V, a compute shader per function over arrays; needs a build with the feature `spirv`

@@ -183,6 +183,7 @@ const fn ending(target: ShaderTarget) -> &'static str {
         ShaderTarget::Glsl => "glsl",
         ShaderTarget::Hlsl => "hlsl",
         ShaderTarget::Msl => "metal",
+        ShaderTarget::Slang => "slang",
         ShaderTarget::Python => "py",
         ShaderTarget::Spirv => "spv",
     }

@@ -158,6 +158,7 @@ impl Visitor for Source<'_> {
             ShaderTarget::Glsl => Language::Glsl,
             ShaderTarget::Hlsl => Language::Hlsl,
             ShaderTarget::Msl => Language::Msl,
+            ShaderTarget::Slang => Language::Slang,
             ShaderTarget::Python => Language::Python,
             ShaderTarget::Spirv => {
                 let words = spirv(&program)?;

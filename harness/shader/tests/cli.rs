@@ -65,6 +65,10 @@ fn every_language_has_the_functions_that_are_named() {
             "HairisKajiyaKayEval hairis_kajiya_kay_eval_hit(HairisKajiyaKayMaterial material, float3",
         ),
         (
+            "slang",
+            "[Differentiable]\nHairisKajiyaKayEval hairis_kajiya_kay_eval_hit(HairisKajiyaKayMaterial material, float3",
+        ),
+        (
             "python",
             "def eval_hit(material: Material, wo: Vector, h: Array, wi: Vector, ",
         ),

@@ -85,11 +85,13 @@ def raw(model: str | Material, preset: str | None, fields: dict[str, Any], is_ar
 
     In the material, any number stands in for an array, which has no value before a compiled function runs.
     """
+    fields = dict(fields)
+    energy = fields.pop("energy", model.energy if isinstance(model, Material) else "raw")
+    if energy != "raw":
+        raise ValueError(f'energy must be "raw" for arrays, got "{energy}", whose factor has no derivatives: give energy="raw"')
     if isinstance(model, Material):
         if preset is not None:
             raise TypeError(f"preset must be left out with a material, got {preset!r}")
-        if model.energy != "raw":
-            raise ValueError(f'energy must be "raw" for arrays, got "{model.energy}"')
         material, model = model, model.model
     else:
         material = Material(model, preset, energy="raw")

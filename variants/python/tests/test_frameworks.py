@@ -315,8 +315,10 @@ def test_scalar_arrays_of_drjit_are_numbers(drjit: Any) -> None:
 def refusals(module: Any, array: Callable[[Any], Any]) -> list[tuple[type[Exception], str, Callable[[], object]]]:
     make, wo, wi = module.material, array(hits(10)[0]), array(hits(10)[1])
     vectors, got = "must be numbers of shape (..., 3), got", str(array([1]).dtype)
+    refused = 'energy must be "raw" for arrays, got "conserving", whose factor has no derivatives: give energy="raw"'
     return [
-        (ValueError, 'energy must be "raw" for arrays, got "conserving"', lambda: make(hairis.Material())),
+        (ValueError, refused, lambda: make(hairis.Material())),
+        (ValueError, refused, lambda: make("gaussian", energy="conserving")),
         (TypeError, "preset must be left out with a material, got 'brown'", lambda: make(hairis.Material(energy="raw"), "brown")),
         (ValueError, "field must be one of kd, ks, exponent, form, got \"beta\"", lambda: make(SMALL, beta=array((1, 1, 1)))),
         (TypeError, f"form must be a word, got {type(array([1]))}", lambda: make(SMALL, form=array([1]))),
@@ -334,7 +336,7 @@ def refusals(module: Any, array: Callable[[Any], Any]) -> list[tuple[type[Except
     ]
 
 
-@pytest.mark.parametrize("place", range(11))
+@pytest.mark.parametrize("place", range(12))
 def test_refusals(host: Torch, place: int) -> None:
     kind, text, call = refusals(host.module, host.array)[place]
     with pytest.raises(kind) as refusal:

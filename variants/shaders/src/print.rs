@@ -30,24 +30,27 @@ pub enum Language {
     Hlsl,
     /// Metal shading language.
     Msl,
+    /// Slang, whose compiler differentiates the functions.
+    Slang,
     /// Python over arrays of `NumPy`, JAX, `PyTorch` or Dr.Jit.
     Python,
 }
 
 impl Language {
     /// Every language in which programs are printed.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::C,
         Self::Wgsl,
         Self::Glsl,
         Self::Hlsl,
         Self::Msl,
+        Self::Slang,
         Self::Python,
     ];
 
     /// Returns true if compilers may reassociate sums, and the language has no keyword that forbids it.
     const fn takes_sums_apart(self) -> bool {
-        matches!(self, Self::Wgsl | Self::Msl | Self::Python)
+        matches!(self, Self::Wgsl | Self::Msl | Self::Slang | Self::Python)
     }
 
     /// Returns the type of a form of field, and the text that follows the field's name.
@@ -68,7 +71,7 @@ impl Language {
             Self::C => "HairisVec3",
             Self::Wgsl => "vec3<f32>",
             Self::Glsl => "vec3",
-            Self::Hlsl | Self::Msl => "float3",
+            Self::Hlsl | Self::Msl | Self::Slang => "float3",
             Self::Python => "Vector",
         }
     }
@@ -82,7 +85,9 @@ impl Language {
             (Self::Msl, true) => "const bool",
             // Compilers keep the order of arithmetic whose results are declared precise.
             (Self::Glsl | Self::Hlsl, false) => "precise float",
-            (Self::Glsl | Self::Hlsl, true) => "bool",
+            // Slang passes the word on to WGSL, which does not have it, so that a macro is one or empty.
+            (Self::Slang, false) => "HAIRIS_PRECISE float",
+            (Self::Glsl | Self::Hlsl | Self::Slang, true) => "bool",
             (Self::Python, _) => "",
         }
     }
@@ -206,6 +211,10 @@ fn declare(out: &mut String, program: &Program, language: Language, record: &Rec
     let (open, close) = match language {
         Language::C => (format!("typedef struct {name} {{"), format!("}} {name};")),
         Language::Wgsl => (format!("struct {name} {{"), "}".to_owned()),
+        Language::Slang => (
+            format!("struct {name} : IDifferentiable {{"),
+            "};".to_owned(),
+        ),
         _ => (format!("struct {name} {{"), "};".to_owned()),
     };
     out.push_str(&open);
@@ -255,6 +264,9 @@ impl<'a> Body<'a> {
             function,
             inputs: match language {
                 Language::Python => python::inputs(function),
+                Language::Slang => (0..function.inputs().len())
+                    .map(|i| format!("i{i}"))
+                    .collect(),
                 _ => function.inputs(),
             },
             prefix: match language {
@@ -266,6 +278,9 @@ impl<'a> Body<'a> {
 
     fn print(&self, out: &mut String) {
         self.signature(out);
+        if self.language == Language::Slang {
+            self.finite_inputs(out);
+        }
         self.statements(
             |comment| format!("    // {comment}\n"),
             out,
@@ -276,6 +291,17 @@ impl<'a> Body<'a> {
             let _ = writeln!(out, "    result.{place} = {};", self.name(*result));
         }
         out.push_str("    return result;\n}\n\n");
+    }
+
+    /// Prints the numbers that the function reads, each by a function whose derivative is finite.
+    fn finite_inputs(&self, out: &mut String) {
+        let (inputs, prefix) = (self.function.inputs(), &self.prefix);
+        for node in self.function.graph().nodes() {
+            if let Kind::Input(place) = node.kind {
+                let input = &inputs[place as usize];
+                let _ = writeln!(out, "    float i{place} = {prefix}finite({input});");
+            }
+        }
     }
 
     /// Prints the operations in their order, below comments on their stages.
@@ -329,8 +355,12 @@ impl<'a> Body<'a> {
                 if language == Language::C && arguments.is_empty() {
                     arguments.push_str("void");
                 }
+                let before = match language {
+                    Language::Slang => "[Differentiable]\n",
+                    _ => "HAIRIS_FN ",
+                };
                 (
-                    format!("HAIRIS_FN {of} {prefix}{name}({arguments}) {{"),
+                    format!("{before}{of} {prefix}{name}({arguments}) {{"),
                     format!("{of} result;"),
                 )
             }

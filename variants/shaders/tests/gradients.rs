@@ -88,6 +88,13 @@ impl Weighted {
 
     /// Compares gradients with differences in double precision: 1e-6 in the median, 1e-3 for 99.9%.
     pub(crate) fn check(&self, gradients: &[f32], name: &str) {
+        let [median, most] = self.errors(gradients, name);
+        println!("{name}: {median:e}, {most:e}");
+        assert!(median < 1e-6 && most < 1e-3, "{name}: {median:e}, {most:e}");
+    }
+
+    /// Returns the errors of gradients against differences in double precision: the median, and the quantile of 99.9%.
+    pub(crate) fn errors(&self, gradients: &[f32], name: &str) -> [f64; 2] {
         let (count, results) = (self.function.inputs().len(), self.function.output().len());
         let gradients = gradients.chunks(self.gradient.output().len());
         assert!(gradients.len() >= self.inputs.len(), "{name}: cases");
@@ -113,12 +120,10 @@ impl Weighted {
         let all = self.inputs.len() * count;
         assert!(errors.len() > all / 2, "{} of {all} smooth", errors.len());
         errors.sort_by(f64::total_cmp);
-        let (median, most) = (
+        [
             errors[errors.len() / 2],
             errors[errors.len() - 1 - errors.len() / 1000],
-        );
-        println!("{name}: {median:e}, {most:e}");
-        assert!(median < 1e-6 && most < 1e-3, "{name}: {median:e}, {most:e}");
+        ]
     }
 }
 

@@ -211,18 +211,19 @@ fn clang_compiles_opencl_and_ptx() {
 fn check_arithmetic<M: Registered>() {
     for target in [Target::Exact, Target::Fused, Target::Gpu, Target::GpuNative] {
         let program = with_gradients::<M>(target);
-        let [c, wgsl, glsl, hlsl, msl] = [
+        let [c, wgsl, glsl, hlsl, msl, slang] = [
             Language::C,
             Language::Wgsl,
             Language::Glsl,
             Language::Hlsl,
             Language::Msl,
+            Language::Slang,
         ]
         .map(|language| print(&program, language));
         // Sums that round to an integer use the language's rounding function.
         let magic = ["8388608.0", "8388723.0", "8388735.0"];
         let is_magic = |line: &&str| magic.iter().any(|number| line.contains(number));
-        for text in [&wgsl, &msl] {
+        for text in [&wgsl, &msl, &slang] {
             for line in text.lines().filter(is_magic) {
                 let rounds = line.contains("round(") || line.contains("rint(");
                 let is_helper = line.contains("8388735.0; }") || line.contains("8388735.0f; }");

@@ -10,6 +10,7 @@ mod names;
 mod operations;
 mod python;
 mod records;
+mod slang;
 mod support;
 mod traps;
 mod vulkan;

@@ -3,6 +3,7 @@
 use crate::c::{compiled, compiled_metal, run};
 use crate::cuda;
 use crate::languages::{compile_glsl, compile_hlsl, write_words};
+use crate::slang;
 use crate::support::{Random, differing, same};
 use crate::vulkan::{Driver, Host};
 use hairis::simd::trace::Op;
@@ -138,6 +139,10 @@ fn every_operation_is_right_on_a_driver() {
         if let Some(module) = compile_hlsl(&program, driver.dir.path()) {
             let got = driver.run(&module, "main", function, &operands());
             check(&program, &got, &expected, "HLSL");
+        }
+        if let Some(module) = slang::precise(&program, function, driver.dir.path()) {
+            let got = driver.run(&module, "operations", function, &operands());
+            check(&program, &got, &expected, "Slang");
         }
     }
 }

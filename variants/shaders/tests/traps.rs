@@ -5,6 +5,8 @@
 //! | compilers take sums apart, and a bell is up to 41% off | `text_avoids_what_compilers_do`, `plain_shaders_have_the_accuracy_of_one_lane` (WGSL), `fast_math_is_refused` (C) |
 //! | XLA takes sums apart, and frameworks pass derivatives through a step | `text_avoids_what_compilers_do`, `.ci/frameworks.py` |
 //! | reverse mode multiplies the infinite slope of a branch that is not taken by 0 | hostile hits of `.ci/frameworks.py` |
+//! | Slang's derivative of a root is wrong below 1e-7, and bits have none | `derivatives_of_slang_are_those_of_differences` |
+//! | Slang passes `precise` on to WGSL, which has no such word | `slang_compiles_to_every_language` |
 //! | NumPy 1 takes numbers of Python for double, NumPy reads text | `arguments_of_python_broadcast_and_bad_ones_are_named` |
 //! | a product with 0 is taken for 0, and NaN is lost | `plain_shaders_have_the_accuracy_of_one_lane` |
 //! | a GPU's `min` loses NaN, and drivers take a choice by a comparison for it; they take `h < 1 or -1 < h` for true | `text_avoids_what_compilers_do`, and on a GPU `plain_shaders_have_the_accuracy_of_one_lane` |

@@ -62,6 +62,8 @@ int main(int argc, char **argv) {
     size_t module_size, input_size;
     const void *words = read_file(argv[1], &module_size), *input = read_file(argv[3], &input_size);
     const size_t calls = input_size / 4 / (size_t)atoi(argv[5]);
+    // Workgroups are whole.
+    const size_t room = (calls + 63) / 64 * 64 * 4, rooms[2] = {room * (size_t)atoi(argv[5]), room * (size_t)atoi(argv[6])};
     const size_t sizes[2] = {input_size, calls * 4 * (size_t)atoi(argv[6])};
 
     const float priority = 1;
@@ -80,7 +82,7 @@ int main(int argc, char **argv) {
     void *maps[2];
     for (int i = 0; i < 2; i++) {
         VkBufferCreateInfo info = {
-            .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = sizes[i], .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
+            .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = rooms[i], .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
         CHECK(vkCreateBuffer(device, &info, NULL, &buffers[i]));
         VkMemoryRequirements needs;
         vkGetBufferMemoryRequirements(device, buffers[i], &needs);

@@ -3,6 +3,7 @@
 
 use crate::gradients::Weighted;
 use crate::languages::{compile_glsl, tool, write_words};
+use crate::slang;
 use crate::support::{Case, Tally, unsigned, visit_every_model};
 use hairis_conformance::cases;
 use hairis_shaders::driver as shader_driver;
@@ -198,10 +199,16 @@ impl Visitor for Kept<'_> {
                 if target == Target::Exact && driver.is_software {
                     let mut one = program.clone();
                     one.keep(vec![function.clone()]);
-                    if let Some(module) = compile_glsl(&one, driver.dir.path()) {
-                        let got = compared(driver.run(&module, "main", function, &inputs));
-                        self.0
-                            .count(function, &got, &expected, &format!("{name} in GLSL"));
+                    let [glsl, slang] = [
+                        compile_glsl(&one, driver.dir.path()),
+                        slang::precise(&one, function, driver.dir.path()),
+                    ];
+                    let both = [("GLSL", "main", glsl), ("Slang", call.name(), slang)];
+                    for (language, entry, module) in both {
+                        let Some(module) = module else { continue };
+                        let got = compared(driver.run(&module, entry, function, &inputs));
+                        let name = format!("{name} in {language}");
+                        self.0.count(function, &got, &expected, &name);
                     }
                 }
             }

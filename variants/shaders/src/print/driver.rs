@@ -3,13 +3,14 @@
 use super::{Language, prefix, python, type_name};
 use crate::function::{Argument, Function};
 use crate::program::Program;
-use crate::record::Field;
 
 /// Returns the entry points for the functions of a program, to follow the text of [`print`](super::print) in one file. Each entry point
 /// reads an array of floats, which holds the arguments of one call after the other, and writes an array of the results.
 ///
 /// - WGSL: a compute shader per function, by the function's name, over buffers 0 (read) and 1 (written) of group 0; workgroups of 64.
 /// - GLSL: `main` of the last function alone, over the same buffers of a Vulkan shader.
+/// - Slang: a compute shader per function, over the same buffers, and for each function a second one, `NAME_backward`, which has the arguments and results of the function's
+///   [gradient](Function::gradient), with the derivatives of Slang's compiler. Both buffers have room for a multiple of 64 calls.
 /// - C: `main` takes the name of a function, reads standard input and writes standard output. Compiled as CUDA, it runs the function on
 ///   the GPU, one thread per call.
 /// - Python: likewise with `NumPy`.
@@ -23,6 +24,7 @@ pub fn driver(program: &Program, language: Language) -> String {
         Language::C => c(program),
         Language::Wgsl => wgsl(program),
         Language::Glsl => glsl(program),
+        Language::Slang => slang(program),
         Language::Python => python(program),
         Language::Hlsl | Language::Msl => panic!("no driver runs {language:?}"),
     }
@@ -30,9 +32,17 @@ pub fn driver(program: &Program, language: Language) -> String {
 
 /// Returns statements that read the arguments from `i * count` on, call the function, and write its result.
 fn statements(program: &Program, language: Language, function: &Function) -> Vec<String> {
+    let count = function.arguments().iter().map(Argument::len).sum();
+    let mut lines = called(program, language, function, count);
+    let places: Vec<_> = function.output().places().collect();
+    lines.extend(stored("r", &places, 0, places.len()));
+    lines
+}
+
+/// Returns statements that read the arguments from `i * count` on, and call the function.
+fn called(program: &Program, language: Language, function: &Function, count: usize) -> Vec<String> {
     let mut lines = Vec::new();
     let mut from = 0;
-    let count: usize = function.arguments().iter().map(Argument::len).sum();
     let variable = |of: &str, name: &str| match language {
         Language::Wgsl => format!("var a_{name}: {of};"),
         _ => format!("{of} a_{name};"),
@@ -60,14 +70,15 @@ fn statements(program: &Program, language: Language, function: &Function) -> Vec
         Language::Wgsl => format!("let r = {call};"),
         _ => format!("{} r = {call};", type_name(program, output)),
     });
-    let len = output.len();
-    let places = output.fields.iter().flat_map(Field::places);
-    lines.extend(
-        (0..len)
-            .zip(places)
-            .map(|(to, place)| format!("outputs[i * {len}u + {to}u] = r.{place};")),
-    );
     lines
+}
+
+/// Returns statements that write these places of a variable to `i * count + first` and on.
+fn stored(of: &str, places: &[String], first: usize, count: usize) -> Vec<String> {
+    (first..)
+        .zip(places)
+        .map(|(to, place)| format!("outputs[i * {count}u + {to}u] = {of}.{place};"))
+        .collect()
 }
 
 fn wgsl(program: &Program) -> String {
@@ -84,6 +95,57 @@ fn wgsl(program: &Program) -> String {
         );
     }
     out
+}
+
+fn slang(program: &Program) -> String {
+    let mut out =
+        "StructuredBuffer<float> inputs;\nRWStructuredBuffer<float> outputs;\n".to_owned();
+    for function in program.functions() {
+        let mut entry = |name: &str, statements: Vec<String>| {
+            let statements = statements.join("\n    ");
+            out += &format!(
+                "\n[shader(\"compute\")] [numthreads(64, 1, 1)] void {name}(uint3 id : SV_DispatchThreadID) {{\n    \
+                 uint i = id.x;\n    {statements}\n}}\n"
+            );
+        };
+        entry(
+            function.name(),
+            statements(program, Language::Slang, function),
+        );
+        let name = format!("{}_backward", function.name());
+        entry(&name, backward(program, function));
+    }
+    out
+}
+
+/// Returns statements with the arguments and results of [`Function::gradient`], whose derivatives are those of Slang's compiler.
+fn backward(program: &Program, function: &Function) -> Vec<String> {
+    let (name, of) = (function.name(), type_name(program, function.output()));
+    let places: Vec<_> = function.output().places().collect();
+    let numbers: usize = function.arguments().iter().map(Argument::len).sum();
+    let all = numbers + places.len();
+    let mut lines = called(program, Language::Slang, function, all);
+    lines.extend(stored("r", &places, 0, all));
+    lines.push(format!("{of}.Differential w;"));
+    let weights = (numbers..).zip(&places);
+    lines.extend(weights.map(|(from, place)| format!("w.{place} = inputs[i * {all}u + {from}u];")));
+    let (mut to, mut pairs, mut stores) = (places.len(), Vec::new(), Vec::new());
+    for argument in function.arguments() {
+        let argument_name = argument.name();
+        lines.push(format!(
+            "var d_{argument_name} = diffPair(a_{argument_name});"
+        ));
+        pairs.push(format!("d_{argument_name}"));
+        for place in argument.places() {
+            let (of, part) = place.split_at(argument_name.len());
+            stores.push(format!("outputs[i * {all}u + {to}u] = d_{of}.d{part};"));
+            to += 1;
+        }
+    }
+    let pairs = pairs.join(", ");
+    lines.push(format!("bwd_diff({}{name})({pairs}, w);", prefix(program)));
+    lines.extend(stores);
+    lines
 }
 
 fn glsl(program: &Program) -> String {

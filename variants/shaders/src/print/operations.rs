@@ -20,7 +20,7 @@ pub(super) enum Form {
 
 /// Returns the template of an operation.
 pub(super) fn template(language: Language, op: Op, form: Form) -> &'static str {
-    use Language::{C, Glsl, Hlsl, Msl, Python, Wgsl};
+    use Language::{C, Glsl, Hlsl, Msl, Python, Slang, Wgsl};
     if language.takes_sums_apart()
         && let Form::Rounds(operand) = form
     {
@@ -31,6 +31,9 @@ pub(super) fn template(language: Language, op: Op, form: Form) -> &'static str {
             (Msl, Op::Add, 0) => return "$a + rint($b)",
             (Msl, Op::Add, 1) => return "rint($a) + $b",
             (Msl, Op::MulAdd, 2) => return "rint($a * $b) + $c",
+            (Slang, Op::Add, 0) => return "$a + no_diff round($b)",
+            (Slang, Op::Add, 1) => return "no_diff round($a) + $b",
+            (Slang, Op::MulAdd, 2) => return "no_diff round($a * $b) + $c",
             (Python, Op::Add, 0) => return "$prounded($a, $b)",
             (Python, Op::Add, 1) => return "$prounded($b, $a)",
             (Python, Op::MulAdd, 2) => return "$prounded($c, $a * $b)",
@@ -55,8 +58,23 @@ pub(super) fn template(language: Language, op: Op, form: Form) -> &'static str {
         (_, Op::Div) => "$a / $b",
         (_, Op::Neg) => "-$a",
         (C, Op::MulAdd) => "fmaf($a, $b, $c)",
+        // Slang's derivative of a root is that at 1e-7 for smaller numbers. Its `?` and `&&` are branches.
+        (Slang, Op::Sqrt) => "$psqrt($a)",
+        (Slang, Op::Min) if form == Form::Limit => "select($a < $b, $a, $b)",
+        (Slang, Op::Max) if form == Form::Limit => "select($a > $b, $a, $b)",
+        (Slang, Op::Min) => "select(and($pis_number($b), $a < $b), $a, $b)",
+        (Slang, Op::Max) => "select(and($pis_number($b), $a > $b), $a, $b)",
+        (Slang, Op::TimesSign) => "select($pis_negative($b), -$a, $a)",
+        (Slang, Op::NegateIf) => "select($a, -$b, $b)",
+        (Slang, Op::ShiftLeft23) => "no_diff $pshift_left_23($a)",
+        // The low half, which is the difference, has the derivative of the whole.
+        (Slang, Op::Upper) => "no_diff $pupper($a)",
+        (Slang, Op::Exponent) => "no_diff $pexponent($a)",
+        (Slang, Op::And) => "and($a, $b)",
+        (Slang, Op::Or) => "or($a, $b)",
+        (Slang, Op::Select) => "select($a, $b, $c)",
         // HLSL's `fma` takes only doubles.
-        (Hlsl, Op::MulAdd) => "mad($a, $b, $c)",
+        (Hlsl | Slang, Op::MulAdd) => "mad($a, $b, $c)",
         (_, Op::MulAdd) => "fma($a, $b, $c)",
         (C, Op::Exp2) => "exp2f($a)",
         (_, Op::Exp2) => "exp2($a)",

@@ -95,6 +95,19 @@ using namespace metal;
 #define HAIRIS_NUMBER as_type<float>
 #endif
 ";
+const SLANG: &str = "\
+#ifndef HAIRIS_OPERATIONS
+#define HAIRIS_OPERATIONS
+#define HAIRIS_FN
+#define HAIRIS_MASK bool
+#define HAIRIS_UINT uint
+#define HAIRIS_BITS asuint
+#define HAIRIS_NUMBER asfloat
+#ifndef HAIRIS_PRECISE
+#define HAIRIS_PRECISE
+#endif
+#endif
+";
 
 /// Choices of C, whose compilers preserve NaN.
 const CHOICES_C: &str = "\
@@ -130,6 +143,29 @@ HAIRIS_FN float $pnumber(HAIRIS_UINT bits) { return HAIRIS_NUMBER(bits); }
 HAIRIS_FN HAIRIS_MASK $pis_below_infinity(float a) {
     return (HAIRIS_BITS(a) & 0x7fffffffu) < 0x7f800000u || HAIRIS_BITS(a) == 0xff800000u;
 }
+
+";
+
+/// Operations whose derivatives Slang's compiler does not find: of bits, of roots, and of numbers that are not finite.
+const DERIVATIVES: &str = "\
+#ifndef HAIRIS_DERIVATIVE
+// Derivatives of `f` in both modes, from `f_by`, which returns the derivative by a number, given that by the result.
+#define HAIRIS_DERIVATIVE(f) \\
+    [ForwardDerivativeOf(f)] DifferentialPair<float> f##_forward(DifferentialPair<float> a) { return diffPair(f(a.p), f##_by(a.p, a.d)); } \\
+    [BackwardDerivativeOf(f)] void f##_backward(inout DifferentialPair<float> a, float d) { a = diffPair(a.p, f##_by(a.p, d)); }
+#endif
+bool $pis_negative(float a) { return (asuint(a) & 0x80000000u) != 0u; }
+float $pmantissa_by(float a, float d) {
+    return a > 0.0f && $pis_below_infinity(a) ? d * ($pmantissa(a) / a) : 0.0f;
+}
+HAIRIS_DERIVATIVE($pmantissa)
+float $psqrt(float a) { return sqrt(a); }
+float $psqrt_by(float a, float d) { return a < 1e-36f ? 0.0f : d * (0.5f / sqrt(a)); }
+HAIRIS_DERIVATIVE($psqrt)
+// An argument: the derivative is 0 where it would be infinite or undefined.
+float $pfinite(float a) { return a; }
+float $pfinite_by(float a, float d) { return (asuint(d) & 0x7fffffffu) < 0x7f800000u ? d : 0.0f; }
+HAIRIS_DERIVATIVE($pfinite)
 
 ";
 
@@ -201,6 +237,9 @@ fn notes(language: Language, target: Target) -> String {
         Language::Msl => {
             "Metal. Compile without fast math (-fno-fast-math, MTLMathModeSafe), or NaN and infinity are not handled."
         }
+        Language::Slang => {
+            "Slang. For bits: -DHAIRIS_PRECISE=precise, and for SPIR-V -emit-spirv-via-glsl."
+        }
         Language::Python => unreachable!("a module of Python has its own head"),
     };
     format!("// {language}\n// {bits}\n")
@@ -225,6 +264,10 @@ pub(super) fn head(program: &Program, language: Language) -> String {
             "// Version of the layout of materials and shading points, and floats in a material.\n\
              const {upper}LAYOUT: u32 = 0x{layout:08x}u;\nconst {upper}MATERIAL_FLOATS: u32 = {material}u;\n\n"
         ),
+        Language::Slang => format!(
+            "// Version of the layout of materials and shading points, and floats in a material.\n\
+             static const uint {upper}LAYOUT = 0x{layout:08x}u;\nstatic const uint {upper}MATERIAL_FLOATS = {material}u;\n\n"
+        ),
         _ => format!(
             "// Version of the layout of materials and shading points, and floats in a material.\n\
              #define {upper}LAYOUT 0x{layout:08x}u\n#define {upper}MATERIAL_FLOATS {material}\n\n"
@@ -239,13 +282,15 @@ pub(super) fn head(program: &Program, language: Language) -> String {
         Language::Glsl => GLSL,
         Language::Hlsl => HLSL,
         Language::Msl => MSL,
+        Language::Slang => SLANG,
         Language::Python => unreachable!("a module of Python has its own head"),
     };
     text += &constants;
     let operations = match language {
-        Language::C => [CHOICES_C, LIKE_C],
-        Language::Wgsl => [WGSL, ""],
-        _ => [CHOICES, LIKE_C],
+        Language::C => [CHOICES_C, LIKE_C, ""],
+        Language::Wgsl => [WGSL, "", ""],
+        Language::Slang => [CHOICES, LIKE_C, DERIVATIVES],
+        _ => [CHOICES, LIKE_C, ""],
     };
     text + &operations.concat().replace("$p", &prefix)
 }
