@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
-packages=(hairis hairis-variants hairis-capi hairis-reference hairis-conformance hairis-shaders hairis-gradients hairis-benches hairis-program hairis-instruments hairis-materials hairis-harness hairis-study hairis-shader)
+packages=(hairis hairis-variants hairis-capi hairis-reference hairis-conformance hairis-shaders hairis-gradients hairis-benches hairis-program hairis-instruments hairis-materials hairis-harness hairis-study hairis-shader hairis-referee)
 
 rm -rf "$target/package"
 cargo package -q --no-verify --allow-dirty --target-dir "$target" "${packages[@]/#/-p}" 2> "$dir/log" || { cat "$dir/log"; exit 1; }

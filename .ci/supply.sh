@@ -28,6 +28,7 @@ done
 check hairis-instruments parquet png
 # Without the models for the kernels, which other packages turn on.
 check hairis-shader '' spirv
+check hairis-referee ''
 
 if command -v cargo-deny > /dev/null; then cargo deny check --config .ci/deny.toml licenses bans sources
 else echo "licences, bans and sources were not checked: cargo install --locked cargo-deny"; fi

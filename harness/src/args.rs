@@ -12,6 +12,7 @@ and SIMD are worth.
   eval      values, densities and samples of any model, from lines of JSON
   compare   speed, accuracy and variance on this machine: 20 s with --quick
   shader    a model as source of C, WGSL, GLSL, HLSL, Metal, Slang and others
+  referee   what is right and wrong in the hair of another program
   fit       the parameters of one model whose look is nearest to that of another
   study     every sampler on a grid of hair and views; merge joins its parts
   claims    what the paper claims, each claim with figures
@@ -64,6 +65,8 @@ pub enum Command {
     Claims(Words),
     /// Print a model as source of another language, which needs no other file
     Shader(Words),
+    /// Write values of a model in double precision, and say what is wrong with those of another program
+    Referee(Words),
     /// Find the parameters of a model whose look is nearest to that of another, and print them
     Fit(Words),
     /// Join the parts of a study that ran in shards into the same tables as one run

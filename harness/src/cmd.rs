@@ -26,6 +26,7 @@ pub fn run(command: &Command) -> Result<(), Error> {
         Command::Claims(words) => other::STUDY.run(Some("claims"), words),
         Command::Merge(words) => other::STUDY.run(Some("merge"), words),
         Command::Fit(words) => other::STUDY.run(Some("fit"), words),
+        Command::Referee(words) => other::REFEREE.run(None, words),
         Command::Shader(words) => other::SHADER.run(None, words),
     }
 }

@@ -23,7 +23,9 @@ struct Args {
 fn hairis() -> Command {
     let study = hairis_study::args::Args::command();
     let shader = hairis_shader::args::Shader::command().name("shader");
-    let others: Vec<Command> = study.get_subcommands().cloned().chain([shader]).collect();
+    let referee = hairis_referee::args::Args::command().name("referee");
+    let others = study.get_subcommands().cloned();
+    let others: Vec<Command> = others.chain([shader, referee]).collect();
     let mut hairis = hairis_harness::args::Args::command();
     for other in others {
         let name = other.get_name().to_owned();

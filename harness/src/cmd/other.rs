@@ -27,6 +27,12 @@ pub(super) const SHADER: Other = Other {
     folder: "harness/shader",
 };
 
+/// Program of `referee`.
+pub(super) const REFEREE: Other = Other {
+    name: "hairis-referee",
+    folder: "harness/referee",
+};
+
 impl Other {
     /// Starts the program with the words of the command line, after `subcommand` if the program has several. Ends with the exit code of
     /// the program; on Unix the program takes the place of this process.

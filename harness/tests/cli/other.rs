@@ -104,7 +104,7 @@ fn a_missing_program_is_named_with_the_way_to_get_it() {
 fn help_lists_every_subcommand() {
     let run = super::run(&["--help"], b"");
     for name in [
-        "eval", "compare", "study", "claims", "shader", "fit", "merge",
+        "eval", "compare", "study", "claims", "shader", "referee", "fit", "merge",
     ] {
         let is_of = |line: &String| line.trim_start().starts_with(&format!("{name} "));
         assert!(run.out.iter().any(is_of), "{name}: {:?}", run.out);

@@ -1,0 +1,170 @@
+//! Answers of another program: cases with numbers of its own.
+
+use hairis_materials::MaterialSpec;
+use hairis_materials::json::{Json, number, numbers, refusal};
+use hairis_reference::exact_reference;
+use hairis_variants::ModelId;
+use std::collections::BTreeMap;
+
+/// Fields of a case besides those of a request of `hairis eval`. The first four need no value here.
+const MORE: [&str; 7] = [
+    "case",
+    "expected",
+    "scene",
+    "drawn_with",
+    "value",
+    "pdf",
+    "lobes",
+];
+
+/// Answer to a case, with what the formulas answer.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// Line of the file, from 1.
+    pub line: usize,
+    /// Number of the shading point.
+    pub scene: f64,
+    /// Unit direction of the viewer, in the frame of the fibre.
+    pub wo: [f64; 3],
+    /// Unit direction of the light.
+    pub wi: [f64; 3],
+    /// Density with which the direction was drawn, per steradian, if the case has it.
+    pub drawn_with: Option<f64>,
+    /// Numbers of the program.
+    pub got: Numbers,
+    /// Numbers of the formulas.
+    pub want: Numbers,
+}
+
+/// Numbers at one direction.
+#[derive(Clone, Debug, Default)]
+pub struct Numbers {
+    /// S without the cosine, linear RGB, per steradian.
+    pub value: Option<[f64; 3]>,
+    /// Density, per steradian.
+    pub pdf: Option<f64>,
+    /// Contribution of each lobe to S, linear RGB, per steradian, by the place of its name in [`Answers::lobes`].
+    pub lobes: Vec<Option<[f64; 3]>>,
+}
+
+/// Answers to cases of one model.
+#[derive(Clone, Debug)]
+pub struct Answers {
+    /// Names of the model's lobes.
+    pub lobes: &'static [&'static str],
+    /// Answers in the order of the file.
+    pub answers: Vec<Answer>,
+}
+
+impl Answers {
+    /// Parses lines of JSON.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error that names the line, the field and the problem if a line is no case, has no number to judge, or is of another
+    /// model than the first.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let mut first: Option<ModelId> = None;
+        let mut answers = Vec::new();
+        for (line, text) in (1..).zip(text.lines()) {
+            let (model, answer) =
+                parse(line, text).map_err(|problem| format!("line {line}: {problem}"))?;
+            let first = *first.get_or_insert(model);
+            if model.lobes() != first.lobes() {
+                let [first, model] = [first, model].map(ModelId::name);
+                let problem = refusal(
+                    "model",
+                    format!("must be that of line 1, {first:?}, got {model:?}"),
+                );
+                return Err(format!("line {line}: {problem}"));
+            }
+            answers.push(answer);
+        }
+        let lobes = first.ok_or("must have a case, got nothing")?.lobes();
+        Ok(Self { lobes, answers })
+    }
+}
+
+fn parse(line: usize, text: &str) -> Result<(ModelId, Answer), String> {
+    let json = Json::parse(text)?;
+    let first = MaterialSpec::first_of_name(&json);
+    let known: Vec<_> = MaterialSpec::fields_of_request(first)
+        .filter(|name| *name != "xi")
+        .chain(MORE)
+        .collect();
+    let fields = json.fields("", &known)?;
+    let given = |name: &str| fields.get(name).ok_or_else(|| refusal(name, "missing"));
+    let optional = |name: &str| fields.get(name).map(|json| number(name, json)).transpose();
+    let spec = MaterialSpec::read(first, &fields)?;
+    let [wo, wi] = ["wo", "wi"].map(|name| three(name, given(name)?));
+    let (wo, wi) = (unit("wo", wo?)?, unit("wi", wi?)?);
+    let h = optional("h")?.unwrap_or(0.0);
+    if !(-1.0..=1.0).contains(&h) {
+        return Err(refusal("h", format!("must be in [-1, 1], got {h}")));
+    }
+    let drawn_with = optional("drawn_with")?;
+    if let Some(density) = drawn_with.filter(|density| *density <= 0.0) {
+        return Err(refusal(
+            "drawn_with",
+            format!("must be above 0, got {density}"),
+        ));
+    }
+    let names = spec.model.lobes();
+    let lobes = match fields.get("lobes") {
+        Some(json) => json.clone().fields("lobes", names)?,
+        None => BTreeMap::new(),
+    };
+    let lobe = |name: &&str| {
+        let json = lobes.get(*name);
+        json.map(|json| three(&format!("lobes.{name}"), json))
+            .transpose()
+    };
+    let got = Numbers {
+        value: fields
+            .get("value")
+            .map(|json| three("value", json))
+            .transpose()?,
+        pdf: optional("pdf")?,
+        lobes: names.iter().map(lobe).collect::<Result<_, _>>()?,
+    };
+    if got.value.is_none() && got.pdf.is_none() && got.lobes.iter().all(Option::is_none) {
+        return Err(refusal("value", "missing; give value, pdf or lobes"));
+    }
+    let point = exact_reference(spec.model, &spec.values, &spec.exact, wo, h)
+        .map_err(|error| error.to_string())?;
+    let (value, pdf) = point.eval_pdf(wi);
+    let lobes = point.lobes(wi).0;
+    let want = Numbers {
+        value: Some(value),
+        pdf: Some(pdf),
+        lobes: (lobes.iter().take(names.len()))
+            .map(|lobe| Some(lobe.color.map(|c| c * lobe.value)))
+            .collect(),
+    };
+    let answer = Answer {
+        line,
+        scene: optional("scene")?.unwrap_or(0.0),
+        wo,
+        wi,
+        drawn_with,
+        got,
+        want,
+    };
+    Ok((spec.model, answer))
+}
+
+fn three(path: &str, json: &Json) -> Result<[f64; 3], String> {
+    let numbers = numbers(path, json, 3)?;
+    Ok([0, 1, 2].map(|row| numbers[row]))
+}
+
+fn unit(path: &str, v: [f64; 3]) -> Result<[f64; 3], String> {
+    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if (length - 1.0).abs() > 1e-3 {
+        return Err(refusal(
+            path,
+            format!("must be a unit vector (to 0.001), got length {length}"),
+        ));
+    }
+    Ok(v.map(|x| x / length))
+}
