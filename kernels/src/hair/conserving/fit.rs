@@ -225,6 +225,7 @@ fn relative_error(c: &[f32; NODES], least: f32) -> f32 {
 
 impl<C: Scalar + From<f32>> AlbedoFit<C> {
     /// Returns the fit that changes no colour.
+    #[inline(never)]
     pub(in crate::hair) fn raw() -> Self {
         let mut raw: Self = LaneStruct::make(&Path::Root, &mut |_| 0.0.into());
         raw.warp.near = [1.0.into(); 2];
