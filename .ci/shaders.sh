@@ -1,8 +1,9 @@
 #!/bin/bash
 # Promise: generated source is what it says. C and C++ (gcc, clang), SPIR-V and GLSL on a Vulkan driver have the bits of one lane
-# for every model, and so have Slang by way of GLSL and Python with NumPy; Slang compiles to SPIR-V, WGSL, HLSL, Metal and CUDA, its
-# compiler finds the derivatives, and the example fits with them; plain WGSL has its accuracy there and on WebGPU of headless Chromium, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C
-# and PTX compile; gradients in C have the bits of the graph; the example draws the same picture on wgpu and on the CPU.
+# for every model, and so have Slang by way of GLSL and Python with NumPy; plain WGSL and Slang have its accuracy there, WGSL also on
+# WebGPU of headless Chromium, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C and PTX compile, and Slang as SPIR-V, WGSL, HLSL, Metal
+# and CUDA; gradients in C have the bits of the graph, and the compiler of Slang finds them; the examples fit widths by Slang, and draw
+# the same picture on wgpu and on the CPU.
 # Where nvcc and a GPU are, CUDA has the bits of one lane as well.
 # Debian's packages: gcc, g++, clang, glslang-tools, spirv-tools, libvulkan-dev, mesa-vulkan-drivers; node, npm, and Chromium as in
 # .ci/page.sh.

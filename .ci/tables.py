@@ -161,6 +161,21 @@ def gradients():
     return record, ["", *levels], rows
 
 
+def frameworks():
+    """Hits in frameworks of arrays on the CPU: processor time in ns with quartiles, and Mitsuba's plugin over Dr.Jit."""
+    record = Record("frameworks.csv")
+    times = {(row["contender"], row["model"], row["call"]): [float(row[name]) for name in ("ns", "low", "high")] for row in record.rows}
+    cells = [(model, call) for model in dict.fromkeys(row["model"] for row in record.rows) for call in ("eval_pdf", "sample")]
+    shown = lambda found: f"{three(found[0])} ({three(found[1])} to {three(found[2])})" if found else "-"
+    names = {"NumPy": "NumPy", "PyTorch": "`hairis.torch`", "JAX": "`hairis.jax`", "Dr.Jit": "`hairis.drjit`",
+             "hairis.mitsuba": "`hairis.mitsuba`", "Mitsuba's hair": "Mitsuba's `hair`"}
+    rows = [[word, *(shown(times.get((name, *cell))) for cell in cells)] for name, word in names.items()]
+    ratios = (times["Mitsuba's hair", "chiang", call][0] / times["Dr.Jit", model, call][0] for model, call in cells)
+    rows.append(["Mitsuba's `hair`, of Chiang et al., over `hairis.drjit`", *(f"**{ratio:.2f}×**" for ratio in ratios)])
+    words = {"eval_pdf": "value and density", "sample": "sample"}
+    return record, ["", *(f"{model.capitalize()}: {words[call]}" for model, call in cells)], rows
+
+
 def cuda():
     """Calls on a GPU: billions per second, and over the formulas with default flags or with fast math."""
     record = Record("cuda.csv")
@@ -237,7 +252,7 @@ def pictures():
     return record, ["", *words.values()], rows
 
 
-TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "pictures": pictures, "refits": refits, "speed": speed}
+TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "pictures": pictures, "refits": refits, "speed": speed}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 

@@ -309,7 +309,7 @@ fn a_folder_has_every_model_in_every_language() {
         "kajiya_kay",
         "chiang",
     ] {
-        for ending in ["h", "wgsl", "glsl", "hlsl", "metal", "py"] {
+        for ending in ["h", "wgsl", "glsl", "hlsl", "metal", "slang", "py"] {
             let file = format!("hairis_{model}.{ending}");
             assert!(out.join(&file).is_file(), "{file}");
         }

@@ -85,7 +85,7 @@ impl Language {
             (Self::Msl, true) => "const bool",
             // Compilers keep the order of arithmetic whose results are declared precise.
             (Self::Glsl | Self::Hlsl, false) => "precise float",
-            // Slang passes the word on to WGSL, which does not have it, so that a macro is one or empty.
+            // Slang passes the word on to WGSL, Metal and CUDA, which lack it, so that a macro is the word or empty.
             (Self::Slang, false) => "HAIRIS_PRECISE float",
             (Self::Glsl | Self::Hlsl | Self::Slang, true) => "bool",
             (Self::Python, _) => "",

@@ -1,6 +1,7 @@
 //! Tests of modules of Slang: its compiler accepts them for every language, and results and derivatives on a Vulkan driver are right.
 
 use crate::gradients::Weighted;
+use crate::languages::tool;
 use crate::support::{Case, visit_every_model};
 use crate::vulkan::{Doubles, Driver, Host};
 use hairis_conformance::cases;
@@ -85,8 +86,16 @@ impl Visitor for Languages {
                 let Some(out) = compile(&source, dir.path(), language, Some(entry), &[]) else {
                     return;
                 };
-                let text = fs::read_to_string(out).expect("the compiler wrote it");
+                let text = fs::read_to_string(&out).expect("the compiler wrote it");
                 assert!(text.contains(entry), "{language}: {entry}");
+                let [from, to] = [out, dir.path().join("hlsl.spv")];
+                let [from, to] = [&from, &to].map(|path| path.to_string_lossy());
+                let glslang = ["-D", "-V", "-S", "comp", "-e", entry, &from, "-o", &to];
+                if language == "hlsl"
+                    && let Some(Err(error)) = tool("glslangValidator", &glslang)
+                {
+                    panic!("{} {entry} by HLSL: {error}", program.name());
+                }
                 if language == "wgsl"
                     && let Err(error) = translate(&text)
                 {
