@@ -71,8 +71,7 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
     #[inline]
     fn material(&self, params: &ChiangParams) -> ChiangMaterial<f32> {
         let d = params.desc();
-        let small_angle = d.shifts == Shifts::SmallAngle;
-        ChiangMaterial::new::<f64>([d.beta_m, d.beta_n, d.tilt, d.eta], d.sigma_a, small_angle)
+        ChiangMaterial::new::<f64>(d, d.shifts == Shifts::SmallAngle)
     }
 
     #[inline(always)]

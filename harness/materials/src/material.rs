@@ -131,12 +131,8 @@ impl MaterialSpec {
         let params = given("params")?.clone();
         let params = params.fields("params", &names_of(fields))?;
         check_present(fields, &params)?;
-        let (values, exact) = replaced(
-            "params",
-            model.defaults(),
-            model.defaults().map(f64::from),
-            &params,
-        )?;
+        let (values, exact) = (model.defaults(), exact_defaults(model));
+        let (values, exact) = replaced("params", values, exact, &params)?;
         let rounded =
             Self::new(model, values).map_err(|error| refused("params", fields, &error, &exact))?;
         Ok(Self {
@@ -244,6 +240,24 @@ fn names_of(fields: &[Field]) -> Vec<&'static str> {
     fields.iter().map(|field| field.name).collect()
 }
 
+/// Returns the defaults of a model in double precision. Those that are a named value have the decimals of the name.
+fn exact_defaults(model: ModelId) -> Values<f64> {
+    let exact = model.defaults().map(f64::from);
+    let named = model
+        .fields()
+        .iter()
+        .filter(|field| !field.names.is_empty());
+    named.fold(exact, |exact, field| {
+        exact.with(field.name, &decimals(model.defaults().numbers(field.name)))
+    })
+}
+
+/// Returns the shortest decimals that round to these numbers, in double precision.
+fn decimals(numbers: &[f32]) -> Vec<f64> {
+    let decimal = |x: &f32| x.to_string().parse().unwrap_or_else(|_| f64::from(*x));
+    numbers.iter().map(decimal).collect()
+}
+
 /// Returns the name of the first field in the group of `field`; exactly one field of a group has a value.
 fn head(field: &Field) -> &'static str {
     field.instead_of.unwrap_or(field.name)
@@ -264,7 +278,7 @@ fn check_present(fields: &[Field], given: &Fields) -> Result<(), String> {
         let is_given = group.iter().any(|name| given.contains_key(*name));
         let problem = match &group[..] {
             _ if is_given => continue,
-            [_] if field.optional => continue,
+            _ if field.optional => continue,
             [_] => "missing".to_owned(),
             names => format!("missing; give one of {}", names.join(", ")),
         };
@@ -301,6 +315,9 @@ fn replaced(
             Kind::Number => vec![number(&at, json)?],
             #[expect(clippy::cast_precision_loss, reason = "a few words")]
             Kind::Word(words) => vec![word(&at, json, words)? as f64],
+            _ if !field.names.is_empty() && matches!(json, Json::Text(_)) => {
+                decimals(field.named[word(&at, json, field.names)?])
+            }
             kind => numbers(&at, json, kind.width())?,
         };
         for other in others {

@@ -60,6 +60,8 @@ fn one_field_of_a_group() {
         Ok([0.0, 1.0, 2.0])
     );
     assert!(read(r#","color":[0.5,0.4,0.3]"#).is_ok(), "a colour");
+    let level = read(r#","sigma_a":[0,1,2],"cuticle_angle":0.5"#);
+    assert_eq!(level.map(|read| read.desc().tilt), Ok(0.0));
     for (rest, problem) in [
         (
             "",
@@ -78,10 +80,45 @@ fn one_field_of_a_group() {
             "params.color[1]: must be in [0, 1], got 1.5",
         ),
         (
+            r#","sigma_a":[0,0,0],"tilt":0,"cuticle_angle":0.5"#,
+            "params.tilt: given together with cuticle_angle; give one of them",
+        ),
+        (
+            r#","sigma_a":[0,0,0],"eumelanin":"brown""#,
+            "params.eumelanin: must be \"d-eon\" or \"cycles\", got \"brown\"",
+        ),
+        (
+            r#","sigma_a":[0,0,0],"tint_r":"cycles""#,
+            "params.tint_r: must be an array of 3 numbers, got \"cycles\"",
+        ),
+        (
             r#","sigma_a":[0,0,0],"eta":0.5"#,
             "params.eta: must be in [1, 4], got 0.5",
         ),
     ] {
         assert_eq!(read(rest), Err(problem.to_owned()), "{rest}");
     }
+}
+
+/// A name stands for the decimals of its pigment, in double precision too.
+#[test]
+fn numbers_by_name() {
+    let read = |eumelanin: &str| {
+        let params =
+            format!(r#"{{"beta_m":0.3,"beta_n":0.3,"melanin":[1,0],"eumelanin":{eumelanin}}}"#);
+        let text = format!(r#"{{"model":"chiang","params":{params}}}"#);
+        let [material] = MaterialSpec::parse_all(&text).expect("legal")[..] else {
+            panic!("one")
+        };
+        material
+    };
+    let (named, given) = (read(r#""cycles""#), read("[0.506, 0.841, 1.653]"));
+    assert_eq!(named.values, given.values);
+    assert_eq!(named.exact, given.exact);
+    assert_eq!(
+        read(r#""d-eon""#).exact.numbers("pheomelanin"),
+        [0.187, 0.4, 1.05]
+    );
+    let params = ChiangParams::from_values(&named.values).expect("legal");
+    assert_eq!(params.desc().sigma_a, [0.506, 0.841, 1.653]);
 }

@@ -7,20 +7,50 @@ use crate::params::error::ParamError;
 /// `sin gamma_t = h / eta` and an index of refraction of 1.55 at normal incidence, `sqrt(1 - 1/eta^2) + eta asin(1 / eta)`.
 const PASSAGE: f32 = 1.850_959_7;
 
-/// Computes the absorption per fibre radius, linear RGB, of concentrations of eumelanin and pheomelanin.
+/// Absorption per fibre radius, linear RGB, of a unit of each pigment of hair.
 ///
-/// `sigma_a = eumelanin (.419 .697 1.37) + pheomelanin (.187 .4 1.05)`
+/// - Domain: each channel finite and at least 0; models check it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pigments {
+    /// Absorption of a unit of eumelanin, which is brown to black.
+    pub eumelanin: [f32; 3],
+    /// Absorption of a unit of pheomelanin, which is red.
+    pub pheomelanin: [f32; 3],
+}
+
+impl Pigments {
+    /// Pigments of d'Eon et al. 2011, for Rec. 709: the default of pbrt and `MaterialX`.
+    pub const D_EON: Self = Self {
+        eumelanin: [0.419, 0.697, 1.37],
+        pheomelanin: [0.187, 0.4, 1.05],
+    };
+    /// Pigments of Cycles and RTXCR, for Rec. 709.
+    pub const CYCLES: Self = Self {
+        eumelanin: [0.506, 0.841, 1.653],
+        pheomelanin: [0.343, 0.733, 1.924],
+    };
+
+    /// Computes the absorption per fibre radius of concentrations of eumelanin and pheomelanin: their weighted sum.
+    #[inline]
+    #[must_use]
+    pub const fn absorption(&self, [eumelanin, pheomelanin]: [f32; 2]) -> [f32; 3] {
+        let (e, f) = (&self.eumelanin, &self.pheomelanin);
+        [
+            e[0] * eumelanin + f[0] * pheomelanin,
+            e[1] * eumelanin + f[1] * pheomelanin,
+            e[2] * eumelanin + f[2] * pheomelanin,
+        ]
+    }
+}
+
+/// Computes the absorption per fibre radius, linear RGB, of concentrations of eumelanin and pheomelanin, with
+/// [`Pigments::D_EON`].
 ///
 /// - Source: d'Eon et al. 2011. Blond hair has .3 and 0, brown 1.3 and 0, black 8 and 0, red .25 and 1.1.
 #[inline]
 #[must_use]
-pub const fn melanin_absorption([eumelanin, pheomelanin]: [f32; 2]) -> [f32; 3] {
-    let (e, f) = (eumelanin, pheomelanin);
-    [
-        0.419 * e + 0.187 * f,
-        0.697 * e + 0.4 * f,
-        1.37 * e + 1.05 * f,
-    ]
+pub const fn melanin_absorption(concentrations: [f32; 2]) -> [f32; 3] {
+    Pigments::D_EON.absorption(concentrations)
 }
 
 /// Computes the concentrations of eumelanin and pheomelanin from an artist's melanin: how dark the hair is, and how red.
