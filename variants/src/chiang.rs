@@ -3,6 +3,7 @@
 mod far_field;
 mod fields;
 mod gather;
+mod like;
 mod lobes;
 mod params;
 mod sampling;
@@ -11,6 +12,7 @@ mod stand_ins;
 pub use far_field::{FarField, OffsetNodes};
 use gather::ChiangMaterial;
 pub use gather::ChiangPrepared;
+pub use like::Likeness;
 pub use params::{ChiangDesc, ChiangParams, Shifts};
 
 use hairis::model::{Direction, LobeEval, LobeModel};

@@ -30,6 +30,39 @@ impl Pigments {
         pheomelanin: [0.343, 0.733, 1.924],
     };
 
+    /// Makes pigments of the colours that a unit of eumelanin and of pheomelanin have, linear RGB: `-ln color`. In the working space of a
+    /// renderer, the colours are those of that space.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a channel is outside `[0, 1]`. Channels below 1e-30 count as 1e-30.
+    ///
+    /// ```
+    /// use hairis::params::Pigments;
+    /// let [eumelanin, pheomelanin] = Pigments::D_EON.colors();
+    /// assert!((eumelanin[2] - 0.254_1).abs() < 1e-4 && (pheomelanin[0] - 0.829_4).abs() < 1e-4);
+    /// # Ok::<(), hairis::ParamError>(())
+    /// ```
+    #[inline]
+    pub fn from_colors([eumelanin, pheomelanin]: [[f32; 3]; 2]) -> Result<Self, ParamError> {
+        const COLOR: Rule = Rule::Range([0.0, 1.0]);
+        COLOR.check("eumelanin_color", &eumelanin)?;
+        COLOR.check("pheomelanin_color", &pheomelanin)?;
+        let absorption = |color: f32| 0.0_f32.max(-libm::logf(color.max(1e-30)));
+        Ok(Self {
+            eumelanin: eumelanin.map(absorption),
+            pheomelanin: pheomelanin.map(absorption),
+        })
+    }
+
+    /// Returns the colours of a unit of eumelanin and of pheomelanin: `exp(-absorption)`, as [`from_colors`](Self::from_colors) takes
+    /// them.
+    #[inline]
+    #[must_use]
+    pub fn colors(&self) -> [[f32; 3]; 2] {
+        [self.eumelanin, self.pheomelanin].map(|unit| unit.map(|sigma| libm::expf(-sigma)))
+    }
+
     /// Computes the absorption per fibre radius of concentrations of eumelanin and pheomelanin: their weighted sum.
     #[inline]
     #[must_use]

@@ -113,6 +113,13 @@ impl Random {
                         }
                         values = values.with(field.name, &numbers);
                     }
+                    // Fields that are left out as a rule: a half of them get less than their default.
+                    (_, None) if field.optional && self.one_in(2) => {
+                        let numbers = values.numbers(field.name).iter();
+                        let numbers: Vec<f32> =
+                            numbers.map(|x| x * self.range(0.5, 0.98)).collect();
+                        values = values.with(field.name, &numbers);
+                    }
                     _ => {}
                 }
             }

@@ -100,8 +100,8 @@ impl<L: Lanes<Stored = L>> ChiangMaterial<L> {
         let shift = params::shifts(W::of(fiber.tilt), index, small_angle).map(W::sin_cos);
         L::stage("normalisation of the lobes");
         let by_lobe = |[r, tt, trt]: [L; 3]| [r, tt, trt, trt];
-        let flag = |mask| L::select(mask, L::splat(-1.0), L::splat(1.0));
         let [width_r, width_tt, width_trt] = fiber.width_n;
+        let (wider_tt, wider_trt) = (width_tt - width_r, width_trt - width_r);
         let widths = ChiangWidths {
             minus_v_ln_2: variance.map(|v| v.rounded() * -LN_2),
             inv_variance: variance.map(|v| (one / v).rounded()),
@@ -110,14 +110,11 @@ impl<L: Lanes<Stored = L>> ChiangMaterial<L> {
             scale_ln_2: by_lobe(scale.map(|s| s.rounded() * (0.5 * LN_2))),
             four_inv_scale: by_lobe(scale.map(|s| (c(4.0) / s).rounded())),
             kept: by_lobe(kept.map(W::rounded)),
-            differ: flag(L::or(
-                L::or(width_r.lt(width_tt), width_tt.lt(width_r)),
-                L::or(width_r.lt(width_trt), width_trt.lt(width_r)),
-            )),
+            differ: -(wider_tt * wider_tt + wider_trt * wider_trt),
         };
-        L::stage("whether a lobe is tinted");
-        let is_below_one = tint.as_flattened().iter().map(|x| x.lt(L::splat(1.0)));
-        let is_tinted = is_below_one.reduce(L::or);
+        L::stage("whether a lobe is tinted: differences that are exact, and 0 without tints");
+        let missing = tint.as_flattened().iter().map(|x| L::splat(1.0) - *x);
+        let missing = missing.fold(L::splat(0.0), |sum, x| sum + x);
         Self {
             twice_sigma_a: fiber
                 .sigma_a
@@ -131,7 +128,7 @@ impl<L: Lanes<Stored = L>> ChiangMaterial<L> {
             sin_shift: shift.map(|[sin, _]| sin.rounded()),
             cos_shift: shift.map(|[_, cos]| cos.rounded()),
             tint: core::array::from_fn(|place| tint[place / 3][place % 3]),
-            tinted: is_tinted.map_or(L::splat(1.0), flag),
+            tinted: -missing,
             widths,
         }
     }

@@ -300,9 +300,15 @@ impl ChiangDesc {
 /// tails.
 #[inline]
 pub(super) fn variance<W: Precision>(m: W) -> W {
-    let c = W::constant;
-    let root = m * (c(0.726) + m * (c(0.812) + c(3.7) * m.power(18)));
+    let root = root(m);
     root * root
+}
+
+/// Returns the longitudinal width of R for a `beta_m`, which is the root of its variance.
+#[inline]
+pub(super) fn root<W: Precision>(m: W) -> W {
+    let c = W::constant;
+    m * (c(0.726) + m * (c(0.812) + c(3.7) * m.power(18)))
 }
 
 /// Returns the scale of the azimuthal logistic for a `beta_n`, in radians.
