@@ -2,16 +2,20 @@
 
 use crate::json::{Json, join, number, numbers, refusal, word};
 use hairis::ParamError;
-use hairis_variants::{Field, Kind, ModelId, Values};
+use hairis_variants::chiang::Likeness;
+use hairis_variants::{Field, Kind, ModelId, Parameters, Values};
 use std::collections::BTreeMap;
 
 #[cfg(feature = "any")]
 use hairis_variants::AnyMaterial;
 #[cfg(not(feature = "any"))]
-use hairis_variants::{Parameters, Registered, Visitor};
+use hairis_variants::{Registered, Visitor};
 
 /// Fields of a JSON object, by name.
 type Fields = BTreeMap<String, Json>;
+
+/// Model of which other renderers have parameters of their own: see [`Likeness`].
+const LIKE: &str = "chiang";
 
 /// Returns the model of a name, with its first sampler.
 ///
@@ -98,9 +102,11 @@ impl MaterialSpec {
     pub fn fields_of_request(first: ModelId) -> impl Iterator<Item = &'static str> {
         let choice = first.choice().map(|(field, _)| field);
         let h = first.is_near_field().then_some("h");
+        let like = (first.name() == LIKE).then_some("like");
         ["model"]
             .into_iter()
             .chain(choice)
+            .chain(like)
             .chain(["params"])
             .chain(h)
             .chain(["wo", "wi", "xi"])
@@ -127,6 +133,14 @@ impl MaterialSpec {
             model = ModelId::find(first.name(), Some(words[word(field, json, &words)?]))
                 .unwrap_or(first);
         }
+        if let Some(like) = object.get("like") {
+            let params = Self::like(model, like, given("params")?.clone())?;
+            let is_chosen = choice.is_some();
+            return Ok(Self {
+                is_chosen,
+                ..params
+            });
+        }
         let fields = model.fields();
         let params = given("params")?.clone();
         let params = params.fields("params", &names_of(fields))?;
@@ -140,6 +154,19 @@ impl MaterialSpec {
             exact,
             ..rounded
         })
+    }
+
+    /// Reads the parameters of another renderer, whose name is `like`. They are converted in single precision.
+    fn like(model: ModelId, like: &Json, params: Json) -> Result<Self, String> {
+        let names: Vec<&str> = Likeness::ALL.iter().map(|like| like.name).collect();
+        let like = &Likeness::ALL[word("like", like, &names)?];
+        let params = params.fields("params", &names_of(like.fields))?;
+        check_present(like.fields, &params)?;
+        let defaults = like.defaults();
+        let (values, exact) = replaced("params", defaults, defaults.map(f64::from), &params)?;
+        let refused = |error| refused("params", like.fields, &error, &exact);
+        let fiber = like.params(&values).map_err(refused)?;
+        Self::new(model, fiber.values()).map_err(refused)
     }
 
     /// Reads all materials of a text: objects with the fields of a request of `hairis eval`, one after another. The fields of the query

@@ -122,3 +122,58 @@ fn numbers_by_name() {
     let params = ChiangParams::from_values(&named.values).expect("legal");
     assert_eq!(params.desc().sigma_a, [0.506, 0.841, 1.653]);
 }
+
+/// Parameters of another renderer, under its names.
+#[test]
+fn like_another_renderer() {
+    let read = |like: &str, params: &str| {
+        let text = format!(r#"{{"model":"chiang","like":"{like}","params":{params}}}"#);
+        let all = MaterialSpec::parse_all(&text)?;
+        ChiangParams::from_values(&all[0].values).map_err(|error| error.to_string())
+    };
+    let cycles = read(
+        "cycles",
+        r#"{"roughness":0.2,"melanin":0.5,"melanin_redness":0.2,"coat":1}"#,
+    );
+    let refused = "params: width_m[0] must be in [0.1, 10], got 0.0040905676";
+    assert_eq!(
+        cycles,
+        Err(refused.to_owned()),
+        "a perfect coat is beyond the range"
+    );
+    let pbrt = read("pbrt", r#"{"eumelanin":0.3,"beta_m":0.4,"alpha":-3}"#).expect("legal");
+    let desc = pbrt.desc();
+    assert_eq!(
+        (desc.beta_m, desc.sigma_a),
+        (0.4, ChiangParams::blond().desc().sigma_a)
+    );
+    assert!((desc.tilt - 3.0_f32.to_radians()).abs() < 1e-7);
+    for (like, params, problem) in [
+        (
+            "arnold",
+            "{}",
+            r#"like: must be "cycles" or "materialx" or "osl" or "pbrt" or "mitsuba", got "arnold""#,
+        ),
+        (
+            "osl",
+            r#"{"lroughness":0.3,"troughness":0.3}"#,
+            "params.aroughness: missing",
+        ),
+        (
+            "osl",
+            r#"{"lroughness":0.3,"troughness":0.3,"aroughness":0.3,"absorption":[0,0,0],"scattering":0.5}"#,
+            "params.scattering: must be in [0, 0], got 0.5",
+        ),
+        (
+            "cycles",
+            r#"{"melanin":0.5,"color":[1,1,1]}"#,
+            "params.melanin: given together with color; give one of them",
+        ),
+    ] {
+        assert_eq!(
+            read(like, params),
+            Err(problem.to_owned()),
+            "{like} {params}"
+        );
+    }
+}

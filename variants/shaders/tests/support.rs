@@ -113,11 +113,15 @@ impl Random {
                         }
                         values = values.with(field.name, &numbers);
                     }
-                    // Fields that are left out as a rule: a half of them get less than their default.
+                    // Fields that are left out as a rule: a half of them get more than their default, or less if that is the most.
                     (_, None) if field.optional && self.one_in(2) => {
-                        let numbers = values.numbers(field.name).iter();
-                        let numbers: Vec<f32> =
-                            numbers.map(|x| x * self.range(0.5, 0.98)).collect();
+                        let most = field.range().map_or(f32::MAX, |[_, most]| most);
+                        let numbers = values.numbers(field.name).to_vec();
+                        let mut vary = |x: f32| {
+                            let [low, high] = if x < most { [1.02, 1.96] } else { [0.5, 0.98] };
+                            x * self.range(low, high)
+                        };
+                        let numbers: Vec<f32> = numbers.into_iter().map(&mut vary).collect();
                         values = values.with(field.name, &numbers);
                     }
                     _ => {}

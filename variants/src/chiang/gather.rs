@@ -398,7 +398,8 @@ pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(
 impl ChiangPrepared<f32> {
     /// Returns the Fresnel reflectance F at the hit. With F and the [path length](Self::path_length) l, a spectral host computes
     /// the attenuations for an absorption sigma. With `T = exp(-sigma l)`, R has `F`, TT has `(1 - F)^2 T`, TRT has
-    /// `(1 - F)^2 F T^2`, and the rest has `(1 - F)^2 F^2 T^3 / (1 - F T)`.
+    /// `(1 - F)^2 F T^2`, and the rest has `(1 - F)^2 F^2 T^3 / (1 - F T)`,
+    /// each times the tint of the lobe.
     #[inline]
     #[must_use]
     pub const fn fresnel(&self) -> f32 {

@@ -10,15 +10,10 @@ use hairis::params::{Pigments, Rule};
 
 /// Renderer whose parameters of hair describe this fibre, by the names and with the conventions of that renderer.
 ///
-/// `x` runs along the fibre from root to tip, as in all of them; Mitsuba has `y` there. Faults of an implementation are not followed.
+#[doc = include_str!("../guide/renderers.md")]
 ///
-/// | name | node or material | read from |
-/// |---|---|---|
-/// | `cycles` | Principled Hair BSDF with the model Chiang | `bsdf_hair_chiang_setup` and its node, Cycles 4 |
-/// | `materialx` | `chiang_hair_bsdf` with its nodes for roughness and absorption | `mx_chiang_hair_bsdf.glsl`, 1.39 |
-/// | `osl` | `spi::PhysicalHairLobe` of BSDL | `bsdf_physicalhair_impl.h` |
-/// | `pbrt` | `hair` of pbrt-v4 | its documentation |
-/// | `mitsuba` | `hair` of Mitsuba 3 | its documentation |
+/// - Source: `bsdf_hair_chiang_setup` and its node in Cycles 4, `mx_chiang_hair_bsdf.glsl` of `MaterialX` 1.39,
+///   `bsdf_physicalhair_impl.h` of OSL, and the documentation of pbrt-v4 and Mitsuba 3.
 ///
 /// ```
 /// use hairis_variants::{ChiangParams, chiang::Likeness};
@@ -122,12 +117,14 @@ impl Likeness {
     ];
 
     /// Finds a renderer by its name.
+    #[inline]
     #[must_use]
     pub fn find(name: &str) -> Option<&'static Self> {
         Self::ALL.iter().find(|one| one.name == name)
     }
 
     /// Returns the renderer's defaults. Fields that the renderer has no default for are not set, and are 0.
+    #[inline]
     #[must_use]
     pub fn defaults(&self) -> Values {
         (self.set)(Values::none(self.fields))
@@ -142,6 +139,7 @@ impl Likeness {
     /// # Panics
     ///
     /// Panics if the values belong to other fields.
+    #[inline(never)]
     pub fn params(&self, values: &Values) -> Result<ChiangParams, ParamError> {
         for field in self.fields.iter().filter(|field| values.has(field.name)) {
             if let Some(rule) = field.rule {

@@ -73,13 +73,8 @@ fn tints_multiply_attenuations() {
         tinted.tint_trt,
     ];
     for (lobe, tint) in tints.into_iter().enumerate() {
-        for c in 0..3 {
-            assert_eq!(
-                after.0[lobe][c],
-                tint[c] * before.0[lobe][c],
-                "lobe {lobe} channel {c}"
-            );
-        }
+        let want = [0, 1, 2].map(|c| tint[c] * before.0[lobe][c]);
+        assert_eq!(after.0[lobe], want, "lobe {lobe}");
     }
 }
 
