@@ -9,7 +9,7 @@ mod presets;
 
 pub use artist::{ArtistControls, Glints, Highlight, Transmission};
 pub use error::{ParamError, Rule};
-pub use pigment::{melanin_absorption, melanin_concentrations, transmittance};
+pub use pigment::{Pigments, melanin_absorption, melanin_concentrations, transmittance};
 
 /// Smallest width that [`HairParams::new`] accepts, in radians.
 pub const MIN_WIDTH: f32 = 1e-4;

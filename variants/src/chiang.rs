@@ -3,6 +3,7 @@
 mod far_field;
 mod fields;
 mod gather;
+mod like;
 mod lobes;
 mod params;
 mod sampling;
@@ -11,6 +12,7 @@ mod stand_ins;
 pub use far_field::{FarField, OffsetNodes};
 use gather::ChiangMaterial;
 pub use gather::ChiangPrepared;
+pub use like::Likeness;
 pub use params::{ChiangDesc, ChiangParams, Shifts};
 
 use hairis::model::{Direction, LobeEval, LobeModel};
@@ -24,14 +26,15 @@ use hairis::{Hit, PerLobe};
 ///
 /// - Lobes: "r", "tt", "trt" and "trrt+", which stands for all further paths, in slots 0 to 3.
 /// - Near field: the model reads [`Hit::h`]. A host without `h` draws it uniformly per hit, because `h = 0` is not the far field.
-/// - Energy: `S cos theta_i` integrates to `sum of A_p` for every `wo`, `h`, roughness and tilt, which is 1 without absorption. The
+/// - Tints are factors on `A_p` for R, TT and TRT; the rest has the tint of TRT. Each lobe has widths of its own.
+/// - Energy: `S cos theta_i` integrates to `sum of A_p` for every `wo`, `h`, width and tilt, which is 1 without absorption and tints. The
 ///   model is not reciprocal, because `A_p` depends on `theta_o` alone, so that light tracing has to use the adjoint.
 /// - Sampling: exact. Weights are `sum of A_p q_p` over `sum of w_p q_p`, with `q_p` the density of a lobe and `w_p` its
-///   probability. They are at most 3, and 1 for clear hair.
+///   probability. They are at most 3, and 1 for clear hair without tints.
 /// - Selection of a lobe: by the mean of `A_p` over the channels ([`Chiang::MEAN`], the default), or by its share in each channel
 ///   ([`Chiang::BY_CHANNEL`]). The latter leaves a third of the variance of the worst channel of red hair.
 /// - Source: Chiang et al. 2016; d'Eon et al. 2011 (`M_p`) and 2013 (its sampling); `ERRATA.md` of this package.
-/// - Accuracy: value, density and each lobe are accurate to `5e-6 + 5e-7 / min(sqrt(v_tt), s)`, further than 1e-3 rad from the axis:
+/// - Accuracy: value, density and each lobe are accurate to `5e-6 + 5e-7 / min(sqrt(v), s)` of the narrowest lobe, further than 1e-3 rad from the axis:
 ///   to 1e-5 for roughnesses of .3, to 3e-5 for .1, and to 3e-3 for 1e-3. The first term is the error of the arithmetic. The second
 ///   is the rounding of angles, about 1e-7 rad, times the steepness of the lobe. Below `exp(-12)` of the peak of `M_p` the error
 ///   grows as the exponent does, and lobes end at about `2^-115` of the peak.
@@ -71,8 +74,7 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
     #[inline]
     fn material(&self, params: &ChiangParams) -> ChiangMaterial<f32> {
         let d = params.desc();
-        let small_angle = d.shifts == Shifts::SmallAngle;
-        ChiangMaterial::new::<f64>([d.beta_m, d.beta_n, d.tilt, d.eta], d.sigma_a, small_angle)
+        ChiangMaterial::new::<f64>(d, d.shifts == Shifts::SmallAngle)
     }
 
     #[inline(always)]

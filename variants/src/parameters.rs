@@ -69,6 +69,10 @@ pub struct Field {
     pub draw: Option<Draw>,
     /// True if random materials draw the field after all fields that are not late.
     pub late: bool,
+    /// Names of the values in `named`, by which hosts may set a field of numbers.
+    pub names: &'static [&'static str],
+    /// Values that have a name.
+    pub named: &'static [&'static [f32]],
     /// Value of each number in a material whose lobes are so narrow that most directions lie in their tails.
     pub narrow: Option<f32>,
 }
@@ -98,6 +102,8 @@ impl Field {
             instead_of: None,
             draw: None,
             late: false,
+            names: &[],
+            named: &[],
             narrow: None,
         }
     }
@@ -191,6 +197,21 @@ impl Field {
     #[must_use]
     pub const fn late(self) -> Self {
         Self { late: true, ..self }
+    }
+
+    /// Gives names to values of the field, each with as many numbers as the field has.
+    #[inline]
+    #[must_use]
+    pub const fn named(
+        self,
+        names: &'static [&'static str],
+        named: &'static [&'static [f32]],
+    ) -> Self {
+        Self {
+            names,
+            named,
+            ..self
+        }
     }
 
     /// Sets the value that every number of the field has where lobes are to be narrow.

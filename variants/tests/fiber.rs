@@ -6,7 +6,7 @@ use hairis_conformance::proptest::{self, prelude::*};
 use hairis_conformance::{
     AnyMaterial, Claims, Expected, Materials, Subject, Tolerance, strategies,
 };
-use hairis_reference::{ChiangReference, Reference, Selection};
+use hairis_reference::{ChiangFormulas as _, ChiangReference, Reference, Selection};
 use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParams, Shifts};
 
 /// The model with one of its selections.
@@ -21,6 +21,29 @@ pub(crate) fn rough(beta_m: f32, beta_n: f32) -> ChiangDesc {
         beta_m,
         beta_n,
         ..ChiangDesc::default()
+    }
+}
+
+/// Returns the width of the narrowest lobe, longitudinal or azimuthal, in rad.
+pub(crate) fn narrowest(desc: &ChiangDesc) -> f64 {
+    let least = |widths: [f32; 3]| f64::from(widths.into_iter().fold(f32::INFINITY, f32::min));
+    let along = least(desc.width_m) * f64::from(desc.longitudinal_variance()).sqrt();
+    along.min(least(desc.width_n) * f64::from(desc.azimuthal_scale()))
+}
+
+/// Tints the lobes, and makes each wider or narrower by up to a factor of two.
+pub(crate) fn vary(desc: ChiangDesc, draws: &mut Draws) -> ChiangDesc {
+    let [tint_r, tint_tt, tint_trt] = [(); 3].map(|()| draws.xi3());
+    let mut widths = |widths: [f32; 3]| {
+        widths.map(|width| width * crate::support::narrow(draws.scale(0.5, 2.0)))
+    };
+    ChiangDesc {
+        tint_r,
+        tint_tt,
+        tint_trt,
+        width_m: widths(desc.width_m),
+        width_n: widths(desc.width_n),
+        ..desc
     }
 }
 
@@ -66,6 +89,17 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
                     ..rough(0.6, 1.0)
                 }),
             ),
+            (
+                "tinted, each lobe of its own width",
+                params(ChiangDesc {
+                    tint_r: [1.0, 0.8, 0.5],
+                    tint_tt: [0.3, 0.6, 0.9],
+                    tint_trt: [0.9, 0.0, 1.0],
+                    width_m: [0.7, 0.9, 1.4],
+                    width_n: [1.5, 0.6, 0.9],
+                    ..rough(0.3, 0.3)
+                }),
+            ),
         ]
     }
 
@@ -99,6 +133,31 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
                     ..rough(0.01, 1.0)
                 }),
             ),
+            (
+                "black by tints",
+                params(ChiangDesc {
+                    tint_r: [0.0; 3],
+                    tint_tt: [0.0; 3],
+                    tint_trt: [0.0; 3],
+                    ..desc
+                }),
+            ),
+            (
+                "narrowest and widest lobes",
+                params(ChiangDesc {
+                    width_m: [0.1, 10.0, 0.1],
+                    width_n: [10.0, 0.1, 10.0],
+                    ..rough(1e-3, 1e-3)
+                }),
+            ),
+            (
+                "flat",
+                params(ChiangDesc {
+                    width_m: [10.0; 3],
+                    width_n: [10.0; 3],
+                    ..rough(1.0, 1.0)
+                }),
+            ),
         ]
     }
 
@@ -116,6 +175,14 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
             ("narrow", clear(1e-3, 0.05, -0.35, 1.55)),
             ("wide", clear(1.0, 1e-3, 0.35, 1.2)),
             ("dense", clear(0.7, 0.7, 0.0, 4.0)),
+            (
+                "each lobe of its own width",
+                params(ChiangDesc {
+                    width_m: [2.0, 1.0, 0.5],
+                    width_n: [0.5, 1.0, 2.0],
+                    ..*clear(0.3, 0.3, 0.035, 1.55).desc()
+                }),
+            ),
         ]
     }
 
@@ -128,8 +195,10 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
             strategies::range([1.0, 4.0]),
             strategies::intensities(f32::MAX),
             proptest::sample::select(vec![Shifts::DEon, Shifts::SmallAngle]),
+            proptest::bool::ANY,
+            0_u64..1 << 32,
         );
-        let material = |((beta_m, beta_n), tilt, eta, sigma_a, shifts)| {
+        let material = |((beta_m, beta_n), tilt, eta, sigma_a, shifts, varies, seed)| {
             let desc = ChiangDesc {
                 beta_m,
                 beta_n,
@@ -137,6 +206,12 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
                 eta,
                 sigma_a,
                 shifts,
+                ..ChiangDesc::default()
+            };
+            let desc = if varies {
+                vary(desc, &mut Draws(seed))
+            } else {
+                desc
             };
             let code = format!("{desc:?}").replace("shifts: ", "shifts: Shifts::");
             AnyMaterial::new(params(desc), format!("params({code})"))
@@ -191,15 +266,14 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
 
     fn reference(&self, params: &ChiangParams, hit: &Hit) -> Option<Expected> {
         let desc = params.desc();
-        let width = (0.5 * f64::from(desc.longitudinal_variance()).sqrt())
-            .min(f64::from(desc.azimuthal_scale()));
+        let width = narrowest(desc);
         // An angle is off by 1.2e-7 and less, and a lobe as steep as it is narrow: see tests/accuracy.rs.
         let bound = 5e-6 + 5e-7 / width;
         // From exp(-12) of a lobe's peak down the error grows with the exponent.
         let tau = core::f64::consts::TAU;
-        let peak = 0.5
-            / (0.25 * tau * f64::from(desc.longitudinal_variance())).sqrt()
-            / f64::from(desc.azimuthal_scale());
+        let (p, of) = (desc.map(f64::from), [0, 1, 2]);
+        let peaks = of.map(|lobe| 0.5 / (tau * p.variances().0[lobe]).sqrt() / p.scales().0[lobe]);
+        let peak = peaks.into_iter().fold(0.0, f64::max);
         let [_, v, w] = double(hit);
         // Next to the axis the lobes are as much higher as the circle about it is smaller.
         let floor = (-12.0_f64).exp() * 0.5 * peak.max(0.1) / v.hypot(w).max(1e-3);
@@ -233,6 +307,12 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
                 ..rough(beta[0], beta[1])
             })
         };
-        (0..40).map(one).collect()
+        let plain: Vec<ChiangParams> = (0..40).map(one).collect();
+        let mut draws = Draws(0x7147);
+        let varied = plain.iter().step_by(2);
+        let varied: Vec<_> = varied
+            .map(|one| params(vary(*one.desc(), &mut draws)))
+            .collect();
+        [plain, varied].concat()
     }
 }

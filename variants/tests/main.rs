@@ -25,6 +25,7 @@ mod json;
 mod kajiya_kay;
 #[cfg(not(hairis_one))]
 mod lambert_fiber;
+mod like;
 #[cfg(not(hairis_one))]
 mod params;
 #[cfg(not(hairis_one))]

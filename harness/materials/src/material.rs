@@ -2,16 +2,20 @@
 
 use crate::json::{Json, join, number, numbers, refusal, word};
 use hairis::ParamError;
-use hairis_variants::{Field, Kind, ModelId, Values};
+use hairis_variants::chiang::Likeness;
+use hairis_variants::{Field, Kind, ModelId, Parameters, Values};
 use std::collections::BTreeMap;
 
 #[cfg(feature = "any")]
 use hairis_variants::AnyMaterial;
 #[cfg(not(feature = "any"))]
-use hairis_variants::{Parameters, Registered, Visitor};
+use hairis_variants::{Registered, Visitor};
 
 /// Fields of a JSON object, by name.
 type Fields = BTreeMap<String, Json>;
+
+/// Model of which other renderers have parameters of their own: see [`Likeness`].
+const LIKE: &str = "chiang";
 
 /// Returns the model of a name, with its first sampler.
 ///
@@ -98,9 +102,11 @@ impl MaterialSpec {
     pub fn fields_of_request(first: ModelId) -> impl Iterator<Item = &'static str> {
         let choice = first.choice().map(|(field, _)| field);
         let h = first.is_near_field().then_some("h");
+        let like = (first.name() == LIKE).then_some("like");
         ["model"]
             .into_iter()
             .chain(choice)
+            .chain(like)
             .chain(["params"])
             .chain(h)
             .chain(["wo", "wi", "xi"])
@@ -127,16 +133,20 @@ impl MaterialSpec {
             model = ModelId::find(first.name(), Some(words[word(field, json, &words)?]))
                 .unwrap_or(first);
         }
+        if let Some(like) = object.get("like") {
+            let params = Self::like(model, like, given("params")?.clone())?;
+            let is_chosen = choice.is_some();
+            return Ok(Self {
+                is_chosen,
+                ..params
+            });
+        }
         let fields = model.fields();
         let params = given("params")?.clone();
         let params = params.fields("params", &names_of(fields))?;
         check_present(fields, &params)?;
-        let (values, exact) = replaced(
-            "params",
-            model.defaults(),
-            model.defaults().map(f64::from),
-            &params,
-        )?;
+        let (values, exact) = (model.defaults(), exact_defaults(model));
+        let (values, exact) = replaced("params", values, exact, &params)?;
         let rounded =
             Self::new(model, values).map_err(|error| refused("params", fields, &error, &exact))?;
         Ok(Self {
@@ -144,6 +154,19 @@ impl MaterialSpec {
             exact,
             ..rounded
         })
+    }
+
+    /// Reads the parameters of another renderer, whose name is `like`. They are converted in single precision.
+    fn like(model: ModelId, like: &Json, params: Json) -> Result<Self, String> {
+        let names: Vec<&str> = Likeness::ALL.iter().map(|like| like.name).collect();
+        let like = &Likeness::ALL[word("like", like, &names)?];
+        let params = params.fields("params", &names_of(like.fields))?;
+        check_present(like.fields, &params)?;
+        let defaults = like.defaults();
+        let (values, exact) = replaced("params", defaults, defaults.map(f64::from), &params)?;
+        let refused = |error| refused("params", like.fields, &error, &exact);
+        let fiber = like.params(&values).map_err(refused)?;
+        Self::new(model, fiber.values()).map_err(refused)
     }
 
     /// Reads all materials of a text: objects with the fields of a request of `hairis eval`, one after another. The fields of the query
@@ -244,6 +267,24 @@ fn names_of(fields: &[Field]) -> Vec<&'static str> {
     fields.iter().map(|field| field.name).collect()
 }
 
+/// Returns the defaults of a model in double precision. Those that are a named value have the decimals of the name.
+fn exact_defaults(model: ModelId) -> Values<f64> {
+    let exact = model.defaults().map(f64::from);
+    let named = model
+        .fields()
+        .iter()
+        .filter(|field| !field.names.is_empty());
+    named.fold(exact, |exact, field| {
+        exact.with(field.name, &decimals(model.defaults().numbers(field.name)))
+    })
+}
+
+/// Returns the shortest decimals that round to these numbers, in double precision.
+fn decimals(numbers: &[f32]) -> Vec<f64> {
+    let decimal = |x: &f32| x.to_string().parse().unwrap_or_else(|_| f64::from(*x));
+    numbers.iter().map(decimal).collect()
+}
+
 /// Returns the name of the first field in the group of `field`; exactly one field of a group has a value.
 fn head(field: &Field) -> &'static str {
     field.instead_of.unwrap_or(field.name)
@@ -264,7 +305,7 @@ fn check_present(fields: &[Field], given: &Fields) -> Result<(), String> {
         let is_given = group.iter().any(|name| given.contains_key(*name));
         let problem = match &group[..] {
             _ if is_given => continue,
-            [_] if field.optional => continue,
+            _ if field.optional => continue,
             [_] => "missing".to_owned(),
             names => format!("missing; give one of {}", names.join(", ")),
         };
@@ -301,6 +342,9 @@ fn replaced(
             Kind::Number => vec![number(&at, json)?],
             #[expect(clippy::cast_precision_loss, reason = "a few words")]
             Kind::Word(words) => vec![word(&at, json, words)? as f64],
+            _ if !field.names.is_empty() && matches!(json, Json::Text(_)) => {
+                decimals(field.named[word(&at, json, field.names)?])
+            }
             kind => numbers(&at, json, kind.width())?,
         };
         for other in others {

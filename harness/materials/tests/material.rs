@@ -60,6 +60,8 @@ fn one_field_of_a_group() {
         Ok([0.0, 1.0, 2.0])
     );
     assert!(read(r#","color":[0.5,0.4,0.3]"#).is_ok(), "a colour");
+    let level = read(r#","sigma_a":[0,1,2],"cuticle_angle":0.5"#);
+    assert_eq!(level.map(|read| read.desc().tilt), Ok(0.0));
     for (rest, problem) in [
         (
             "",
@@ -78,10 +80,100 @@ fn one_field_of_a_group() {
             "params.color[1]: must be in [0, 1], got 1.5",
         ),
         (
+            r#","sigma_a":[0,0,0],"tilt":0,"cuticle_angle":0.5"#,
+            "params.tilt: given together with cuticle_angle; give one of them",
+        ),
+        (
+            r#","sigma_a":[0,0,0],"eumelanin":"brown""#,
+            "params.eumelanin: must be \"d-eon\" or \"cycles\", got \"brown\"",
+        ),
+        (
+            r#","sigma_a":[0,0,0],"tint_r":"cycles""#,
+            "params.tint_r: must be an array of 3 numbers, got \"cycles\"",
+        ),
+        (
             r#","sigma_a":[0,0,0],"eta":0.5"#,
             "params.eta: must be in [1, 4], got 0.5",
         ),
     ] {
         assert_eq!(read(rest), Err(problem.to_owned()), "{rest}");
+    }
+}
+
+/// A name stands for the decimals of its pigment, in double precision too.
+#[test]
+fn numbers_by_name() {
+    let read = |eumelanin: &str| {
+        let params =
+            format!(r#"{{"beta_m":0.3,"beta_n":0.3,"melanin":[1,0],"eumelanin":{eumelanin}}}"#);
+        let text = format!(r#"{{"model":"chiang","params":{params}}}"#);
+        let [material] = MaterialSpec::parse_all(&text).expect("legal")[..] else {
+            panic!("one")
+        };
+        material
+    };
+    let (named, given) = (read(r#""cycles""#), read("[0.506, 0.841, 1.653]"));
+    assert_eq!(named.values, given.values);
+    assert_eq!(named.exact, given.exact);
+    assert_eq!(
+        read(r#""d-eon""#).exact.numbers("pheomelanin"),
+        [0.187, 0.4, 1.05]
+    );
+    let params = ChiangParams::from_values(&named.values).expect("legal");
+    assert_eq!(params.desc().sigma_a, [0.506, 0.841, 1.653]);
+}
+
+/// Parameters of another renderer, under its names.
+#[test]
+fn like_another_renderer() {
+    let read = |like: &str, params: &str| {
+        let text = format!(r#"{{"model":"chiang","like":"{like}","params":{params}}}"#);
+        let all = MaterialSpec::parse_all(&text)?;
+        ChiangParams::from_values(&all[0].values).map_err(|error| error.to_string())
+    };
+    let cycles = read(
+        "cycles",
+        r#"{"roughness":0.2,"melanin":0.5,"melanin_redness":0.2,"coat":1}"#,
+    );
+    let refused = "params: width_m[0] must be in [0.1, 10], got 0.0040905676";
+    assert_eq!(
+        cycles,
+        Err(refused.to_owned()),
+        "a perfect coat is beyond the range"
+    );
+    let pbrt = read("pbrt", r#"{"eumelanin":0.3,"beta_m":0.4,"alpha":-3}"#).expect("legal");
+    let desc = pbrt.desc();
+    assert_eq!(
+        (desc.beta_m, desc.sigma_a),
+        (0.4, ChiangParams::blond().desc().sigma_a)
+    );
+    assert!((desc.tilt - 3.0_f32.to_radians()).abs() < 1e-7);
+    for (like, params, problem) in [
+        (
+            "arnold",
+            "{}",
+            r#"like: must be "cycles" or "materialx" or "osl" or "pbrt" or "mitsuba", got "arnold""#,
+        ),
+        (
+            "osl",
+            r#"{"lroughness":0.3,"troughness":0.3}"#,
+            "params.aroughness: missing",
+        ),
+        (
+            "osl",
+            r#"{"lroughness":0.3,"troughness":0.3,"aroughness":0.3,"absorption":[0,0,0],"scattering":0.5}"#,
+            "params.scattering: must be in [0, 0], got 0.5",
+        ),
+        (
+            "cycles",
+            r#"{"melanin":0.5,"color":[1,1,1]}"#,
+            "params.melanin: given together with color; give one of them",
+        ),
+    ] {
+        assert_eq!(
+            read(like, params),
+            Err(problem.to_owned()),
+            "{like} {params}"
+        );
     }
 }

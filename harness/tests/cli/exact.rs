@@ -122,6 +122,33 @@ fn chiang_by_absorption_melanin_and_color() {
         + 5.574 * powers[2]
         + 0.245 * powers[3];
     let of_color = color.map(|c: f64| (c.ln() / denominator).powi(2));
+    // Cycles' pigments by name, and half a turn per unit of cuticle angle.
+    let of_cycles: [f64; 3] = core::array::from_fn(|c| {
+        melanin[0] * [0.506, 0.841, 1.653][c] + melanin[1] * [0.343, 0.733, 1.924][c]
+    });
+    let cycles = ChiangDesc {
+        beta_m: 0.3,
+        beta_n,
+        tilt: core::f64::consts::PI * (0.52 - 0.5),
+        eta: 1.55,
+        sigma_a: of_cycles,
+        tint_r: [0.9, 0.5, 0.1],
+        tint_tt: [0.3, 0.2, 0.7],
+        tint_trt: [0.0, 1.0, 0.6],
+        width_m: [1.3, 0.7, 1.1],
+        width_n: [0.6, 0.9, 1.7],
+        ..ChiangDesc::default().map(f64::from)
+    };
+    let line = json!({"model": "chiang", "wo": WO, "h": H, "params": {
+        "beta_m": 0.3, "beta_n": beta_n, "cuticle_angle": 0.52,
+        "melanin": melanin, "eumelanin": "cycles", "pheomelanin": "cycles",
+        "tint_r": cycles.tint_r, "tint_tt": cycles.tint_tt, "tint_trt": cycles.tint_trt,
+        "width_m": cycles.width_m, "width_n": cycles.width_n, "eta": 1.55,
+    }});
+    assert_exact(
+        &line,
+        &ChiangConstants::new(&cycles, Selection::Mean).prepare(WO, H),
+    );
     for (field, numbers, sigma_a) in [
         ("sigma_a", json!([0.3, 0.5, 0.7]), [0.3, 0.5, 0.7]),
         ("melanin", json!(melanin), of_melanin),
@@ -135,6 +162,7 @@ fn chiang_by_absorption_melanin_and_color() {
             eta: 1.55,
             sigma_a,
             shifts: Shifts::SmallAngle,
+            ..ChiangDesc::default().map(f64::from)
         };
         let mut params = json!({"beta_m": p.beta_m, "beta_n": beta_n, "tilt": p.tilt, "eta": p.eta, "shifts": "small-angle"});
         params[field] = numbers;

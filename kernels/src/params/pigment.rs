@@ -7,20 +7,83 @@ use crate::params::error::ParamError;
 /// `sin gamma_t = h / eta` and an index of refraction of 1.55 at normal incidence, `sqrt(1 - 1/eta^2) + eta asin(1 / eta)`.
 const PASSAGE: f32 = 1.850_959_7;
 
-/// Computes the absorption per fibre radius, linear RGB, of concentrations of eumelanin and pheomelanin.
+/// Absorption per fibre radius, linear RGB, of a unit of each pigment of hair.
 ///
-/// `sigma_a = eumelanin (.419 .697 1.37) + pheomelanin (.187 .4 1.05)`
+/// - Domain: each channel finite and at least 0; models check it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pigments {
+    /// Absorption of a unit of eumelanin, which is brown to black.
+    pub eumelanin: [f32; 3],
+    /// Absorption of a unit of pheomelanin, which is red.
+    pub pheomelanin: [f32; 3],
+}
+
+impl Pigments {
+    /// Pigments of d'Eon et al. 2011, for Rec. 709: the default of pbrt and `MaterialX`.
+    pub const D_EON: Self = Self {
+        eumelanin: [0.419, 0.697, 1.37],
+        pheomelanin: [0.187, 0.4, 1.05],
+    };
+    /// Pigments of Cycles and RTXCR, for Rec. 709.
+    pub const CYCLES: Self = Self {
+        eumelanin: [0.506, 0.841, 1.653],
+        pheomelanin: [0.343, 0.733, 1.924],
+    };
+
+    /// Makes pigments of the colours that a unit of eumelanin and of pheomelanin have, linear RGB: `-ln color`. In the working space of a
+    /// renderer, the colours are those of that space.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if a channel is outside `[0, 1]`. Channels below 1e-30 count as 1e-30.
+    ///
+    /// ```
+    /// use hairis::params::Pigments;
+    /// let [eumelanin, pheomelanin] = Pigments::D_EON.colors();
+    /// assert!((eumelanin[2] - 0.254_1).abs() < 1e-4 && (pheomelanin[0] - 0.829_4).abs() < 1e-4);
+    /// # Ok::<(), hairis::ParamError>(())
+    /// ```
+    #[inline]
+    pub fn from_colors([eumelanin, pheomelanin]: [[f32; 3]; 2]) -> Result<Self, ParamError> {
+        const COLOR: Rule = Rule::Range([0.0, 1.0]);
+        COLOR.check("eumelanin_color", &eumelanin)?;
+        COLOR.check("pheomelanin_color", &pheomelanin)?;
+        let absorption = |color: f32| 0.0_f32.max(-libm::logf(color.max(1e-30)));
+        Ok(Self {
+            eumelanin: eumelanin.map(absorption),
+            pheomelanin: pheomelanin.map(absorption),
+        })
+    }
+
+    /// Returns the colours of a unit of eumelanin and of pheomelanin: `exp(-absorption)`, as [`from_colors`](Self::from_colors) takes
+    /// them.
+    #[inline]
+    #[must_use]
+    pub fn colors(&self) -> [[f32; 3]; 2] {
+        [self.eumelanin, self.pheomelanin].map(|unit| unit.map(|sigma| libm::expf(-sigma)))
+    }
+
+    /// Computes the absorption per fibre radius of concentrations of eumelanin and pheomelanin: their weighted sum.
+    #[inline]
+    #[must_use]
+    pub const fn absorption(&self, [eumelanin, pheomelanin]: [f32; 2]) -> [f32; 3] {
+        let (e, f) = (&self.eumelanin, &self.pheomelanin);
+        [
+            e[0] * eumelanin + f[0] * pheomelanin,
+            e[1] * eumelanin + f[1] * pheomelanin,
+            e[2] * eumelanin + f[2] * pheomelanin,
+        ]
+    }
+}
+
+/// Computes the absorption per fibre radius, linear RGB, of concentrations of eumelanin and pheomelanin, with
+/// [`Pigments::D_EON`].
 ///
 /// - Source: d'Eon et al. 2011. Blond hair has .3 and 0, brown 1.3 and 0, black 8 and 0, red .25 and 1.1.
 #[inline]
 #[must_use]
-pub const fn melanin_absorption([eumelanin, pheomelanin]: [f32; 2]) -> [f32; 3] {
-    let (e, f) = (eumelanin, pheomelanin);
-    [
-        0.419 * e + 0.187 * f,
-        0.697 * e + 0.4 * f,
-        1.37 * e + 1.05 * f,
-    ]
+pub const fn melanin_absorption(concentrations: [f32; 2]) -> [f32; 3] {
+    Pigments::D_EON.absorption(concentrations)
 }
 
 /// Computes the concentrations of eumelanin and pheomelanin from an artist's melanin: how dark the hair is, and how red.

@@ -176,6 +176,13 @@ pub trait Broadcast<L: Lanes>: Scalar {
     fn fresh_lanes(&self) -> L {
         self.lanes()
     }
+    /// Returns true if the number of any lane is below 0, for a branch that all lanes take together. Lanes that record take the branch.
+    #[doc(hidden)]
+    #[inline(always)]
+    #[must_use]
+    fn any_below_0(&self) -> bool {
+        true
+    }
     /// Returns, for each lane, the entry at the lane's index.
     #[inline(always)]
     fn look_up(table: &[Self; 4], index: L::Index) -> L {
@@ -217,6 +224,10 @@ impl<L: Lanes> Broadcast<L> for f32 {
         L::splat(*self)
     }
     #[inline(always)]
+    fn any_below_0(&self) -> bool {
+        *self < 0.0
+    }
+    #[inline(always)]
     fn look_up(table: &[Self; 4], index: L::Index) -> L {
         index.look_up(table)
     }
@@ -242,6 +253,10 @@ impl<L: Lanes<Stored = f32x8>> Broadcast<L> for f32x8 {
     #[inline(always)]
     fn fresh_lanes(&self) -> L {
         L::load_fresh(self)
+    }
+    #[inline(always)]
+    fn any_below_0(&self) -> bool {
+        self.simd_lt(Self::ZERO).any()
     }
     #[inline(always)]
     fn look_up_four(table: &Self::Table, index: L::Index, upper: L::Mask, four: usize) -> [L; 4] {

@@ -41,7 +41,7 @@ extern "C" {
 #define HAIRIS_ABI_VERSION 1
 #define HAIRIS_MATERIAL_SIZE 1536
 #define HAIRIS_BSDF_SIZE 1024
-#define HAIRIS_NUMBERS 32
+#define HAIRIS_NUMBERS 48
 
 typedef int32_t hairis_status;
 enum {

@@ -59,7 +59,7 @@ constants! {
     /// Bytes of a BSDF.
     BSDF_SIZE: usize = 1024, "HAIRIS_BSDF_SIZE";
     /// Largest count of numbers of a model.
-    NUMBERS: usize = 32, "HAIRIS_NUMBERS";
+    NUMBERS: usize = 48, "HAIRIS_NUMBERS";
     /// Status of a call that succeeded.
     OK: i32 = 0, "HAIRIS_OK";
     /// Status if there is no such model, choice, preset, field or word.

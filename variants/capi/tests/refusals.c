@@ -53,12 +53,12 @@ static void setup(void) {
 
   if (hairis_params_init(&params, "chiang", NULL, NULL, &error)) want(0, "the default of chiang");
   before = params;
-  const float numbers[40] = {0};
+  const float numbers[56] = {0};
   refused(hairis_params_set(&params, "beta", numbers, 1, &error), HAIRIS_NAME, "beta", -1, "field must be one of beta_m, beta_n, ");
   refused(hairis_params_set(&params, NULL, numbers, 1, &error), HAIRIS_NAME, "", -1, "field must be one of ");
   refused(hairis_params_set(&params, "sigma_a", numbers, 2, &error), HAIRIS_VALUE, "sigma_a", -1, "sigma_a must be 3 numbers, got 2 numbers");
   refused(hairis_params_set(&params, "sigma_a", NULL, 3, &error), HAIRIS_ARGUMENT, "numbers", -1, "not NULL, got NULL");
-  refused(hairis_params_set(&params, "sigma_a", numbers, 40, &error), HAIRIS_ARGUMENT, "numbers", -1, "at most 32 and not NULL, got 40");
+  refused(hairis_params_set(&params, "sigma_a", numbers, 56, &error), HAIRIS_ARGUMENT, "numbers", -1, "at most 48 and not NULL, got 56");
   refused(hairis_params_set(&params, "shifts", numbers, 1, &error), HAIRIS_NAME, "shifts", -1,
           "shifts must be one of d-eon, small-angle, got 1 numbers");
   refused(hairis_params_set_word(&params, "shifts", "no\nne", &error), HAIRIS_NAME, "shifts", -1,

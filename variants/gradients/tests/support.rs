@@ -54,7 +54,16 @@ impl Random {
         loop {
             let mut values = model.defaults();
             for field in model.fields() {
-                if field.instead_of.is_some() && self.bits().is_multiple_of(2) {
+                // A tilt by another name leaves the draws of other fields as they are.
+                let is_tilt = field.instead_of == Some("tilt");
+                let bits = if is_tilt {
+                    Random(!self.0).bits()
+                } else if field.instead_of.is_some() {
+                    self.bits()
+                } else {
+                    1
+                };
+                if bits.is_multiple_of(2) {
                     continue;
                 }
                 match (field.kind, field.draw) {
@@ -80,6 +89,14 @@ impl Random {
                     (kind, None) if field.instead_of.is_some() => {
                         let mut own = Random(self.0);
                         let numbers = (0..kind.width()).map(|_| own.range(0.02, 0.98));
+                        values = values.with(field.name, &numbers.collect::<Vec<_>>());
+                    }
+                    // Nor those that are left out as a rule, of which a half get less than their default.
+                    (_, None) if field.optional && Random(self.0).bits().is_multiple_of(2) => {
+                        let mut own =
+                            Random(self.0 ^ field.name.bytes().map(u64::from).sum::<u64>());
+                        let numbers = values.numbers(field.name).iter();
+                        let numbers = numbers.map(|x| x * own.range(0.5, 0.98));
                         values = values.with(field.name, &numbers.collect::<Vec<_>>());
                     }
                     _ => {}

@@ -3,7 +3,7 @@
 use crate::fields::{check, no_error};
 use core::ffi::CStr;
 use core::fmt::Display;
-use hairis_capi::layout::{ENERGY_CONSERVING, ENERGY_RAW, ENERGY_SCALED, Params};
+use hairis_capi::layout::{ENERGY_CONSERVING, ENERGY_RAW, ENERGY_SCALED, NUMBERS, Params};
 use hairis_capi::setup;
 use hairis_variants::{Field, Kind, ModelId};
 use numpy::{PyUntypedArray, PyUntypedArrayMethods};
@@ -56,7 +56,7 @@ pub(crate) fn params_of(
     let mut params = Params {
         model: 0,
         given: 0,
-        numbers: [0.0; 32],
+        numbers: [0.0; NUMBERS],
     };
     // SAFETY: the arguments are of this call.
     let status = unsafe {
@@ -190,7 +190,8 @@ pub(crate) fn vector(name: &str, value: &Bound<'_, PyAny>) -> PyResult<[f32; 3]>
 fn set(params: &mut Params, field: &Field, value: &Bound<'_, PyAny>) -> PyResult<()> {
     let name = field.name;
     let (c_name, mut error) = (c_string(name, name)?, no_error());
-    if let Kind::Word(_) = field.kind {
+    let is_named = !field.names.is_empty() && value.is_instance_of::<PyString>();
+    if is_named || matches!(field.kind, Kind::Word(_)) {
         let word = c_string(name, &word(&name, value)?)?;
         // SAFETY: the arguments are of this call.
         let status = unsafe {

@@ -21,10 +21,10 @@ const REST: Lobe = Lobe::slot(3);
 
 /// The model of Chiang et al. and its sampler, for one set of parameters, one `wo` and one offset across the fibre.
 ///
-/// `S = sum_p A_p M_p N_p / cos theta_i`, p = R, TT, TRT and the rest.
+/// `S = sum_p A_p M_p N_p / cos theta_i`, p = R, TT, TRT and the rest. Tints are factors on A, and the rest has that of TRT.
 ///
 /// - Source: Chiang et al. 2016; M from d'Eon et al. 2011, and its sampling from d'Eon et al. 2013, corrected by variants/ERRATA.md.
-/// - Energy: the integral of `S cos theta_i` is the sum of A, exactly 1 without absorption. The model is not reciprocal.
+/// - Energy: the integral of `S cos theta_i` is the sum of A, exactly 1 without absorption and tints. The model is not reciprocal.
 /// - Domain: within 1e-5 rad of the fibre axis `eval` and `pdf` are 0 and samples are discarded. `wo` may have any length; `h` is
 ///   clamped to `[-1, 1]`.
 /// - Accuracy: in `f32`, at directions that it draws itself, within `2e-6 / min(sqrt(v_tt), s)`.
@@ -41,7 +41,7 @@ const REST: Lobe = Lobe::slot(3);
 pub struct ChiangReference<T> {
     phi_o: T,
     cones: PerLobe<Cone<T>>,
-    logistic: Logistic<T>,
+    logistics: PerLobe<Logistic<T>>,
     /// Azimuth of each lobe's centre from that of `wo`.
     centres: PerLobe<T>,
     fresnel: T,
@@ -50,7 +50,7 @@ pub struct ChiangReference<T> {
     probabilities: PerLobe<T>,
 }
 
-/// Constants of a material: variances, the logistic, and the shifts.
+/// Constants of a material: variances, the logistics, the shifts, and the tints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChiangConstants<T> {
     eta: T,
@@ -59,7 +59,8 @@ pub struct ChiangConstants<T> {
     variances: PerLobe<T>,
     /// Sine and cosine of each shift.
     shifts: PerLobe<[T; 2]>,
-    logistic: Logistic<T>,
+    logistics: PerLobe<Logistic<T>>,
+    tints: PerLobe<[T; 3]>,
 }
 
 impl<T: Real> ChiangConstants<T> {
@@ -78,7 +79,13 @@ impl<T: Real> ChiangConstants<T> {
                     .0
                     .map(|shift| [shift.sin(), shift.cos()]),
             ),
-            logistic: Logistic::new(parameters.scale()),
+            logistics: PerLobe(parameters.scales().0.map(Logistic::new)),
+            tints: PerLobe([
+                parameters.tint_r,
+                parameters.tint_tt,
+                parameters.tint_trt,
+                parameters.tint_trt,
+            ]),
         }
     }
 
@@ -122,15 +129,18 @@ impl<T: Real> ChiangConstants<T> {
 
         let cos_gamma_o = ((one - h) * (one + h)).sqrt();
         let [fresnel, passed] = fresnel(contrast, self.eta, cos_theta_o * cos_gamma_o);
-        let attenuation = attenuation(
+        let mut attenuation = attenuation(
             fresnel,
             passed,
             self.sigma_a.map(|sigma| sigma * path_length),
         );
+        for (lobe, tint) in attenuation.0.iter_mut().zip(self.tints.0) {
+            *lobe = [0, 1, 2].map(|c| tint[c] * lobe[c]);
+        }
         ChiangReference {
             phi_o,
             cones: PerLobe([cone(Lobe::R), cone(Lobe::TT), cone(Lobe::TRT), cone(REST)]),
-            logistic: self.logistic,
+            logistics: self.logistics,
             centres: PerLobe([centre(0.0), centre(1.0), centre(2.0), centre(3.0)]),
             fresnel,
             path_length,
@@ -195,8 +205,7 @@ impl<T: Real> ChiangReference<T> {
         if lobe == REST {
             T::from_f64(0.5) / T::PI
         } else {
-            self.logistic
-                .density(azimuth::wrap(phi - self.centres[lobe]))
+            self.logistics[lobe].density(azimuth::wrap(phi - self.centres[lobe]))
         }
     }
 
@@ -242,7 +251,7 @@ impl<T: Real> ChiangReference<T> {
         if lobe == REST {
             T::PI * (xi + xi - T::from_f64(1.0))
         } else {
-            self.logistic.sample(xi)
+            self.logistics[lobe].sample(xi)
         }
     }
 
@@ -253,7 +262,7 @@ impl<T: Real> ChiangReference<T> {
         if lobe == REST {
             T::from_f64(0.5) * (x / T::PI + T::from_f64(1.0))
         } else {
-            self.logistic.cdf(x)
+            self.logistics[lobe].cdf(x)
         }
     }
 }
@@ -304,7 +313,7 @@ impl<T: Real> Reference<T> for ChiangReference<T> {
         )
     }
 
-    /// Returns A of each lobe, linear RGB: the share of the light that leaves by the lobe, which is its directional albedo.
+    /// Returns A of each lobe, linear RGB and tinted: the share of the light that leaves by the lobe, which is its directional albedo.
     #[inline]
     fn albedo(&self) -> PerLobe<[T; 3]> {
         self.attenuation

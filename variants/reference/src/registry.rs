@@ -335,17 +335,15 @@ impl<const BY_CHANNEL: bool> Formulas for Chiang<BY_CHANNEL> {
 
     #[inline]
     fn exact_formulas<T: Real>(params: &ChiangParams, exact: &Values<T>) -> ChiangConstants<T> {
-        let number = |name| {
-            let [number] = exact.get(name);
-            number
-        };
         let parameters = ChiangDesc {
-            beta_m: number("beta_m"),
-            beta_n: number("beta_n"),
-            tilt: number("tilt"),
-            eta: number("eta"),
-            sigma_a: exact.get("sigma_a"),
             shifts: params.desc().shifts,
+            ..ChiangDesc::of_values(exact)
+        };
+        let parameters = if exact.has("cuticle_angle") {
+            let [angle] = exact.get("cuticle_angle");
+            parameters.with_cuticle_angle(angle)
+        } else {
+            parameters
         };
         let parameters = if exact.has("melanin") {
             let [eumelanin, pheomelanin] = exact.get("melanin");
@@ -369,7 +367,11 @@ impl<const BY_CHANNEL: bool> Formulas for Chiang<BY_CHANNEL> {
     /// Returns the slack of the lobes, whose errors grow with their exponent: from `exp(-12)` of the peak down they are absolute.
     fn slack(params: &ChiangParams, _wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
         let (p, [_, v, w]) = (params.desc().map(f64::from), wi);
-        let peak = 0.25 / ((TAU * p.variances()[Lobe::R]).sqrt() * p.scale());
+        let peaks = [Lobe::R, Lobe::TT, Lobe::TRT].map(|lobe| {
+            let width = (TAU * p.variances()[lobe]).sqrt() * p.scales()[lobe];
+            0.25 * p.width_m[0] * p.width_n[0] / width
+        });
+        let peak = peaks[0];
         [Self::ACCURACY.value * (-12.0_f64).exp() * peak / v.hypot(w); 3]
     }
 }

@@ -1,6 +1,7 @@
 //! The formulas of the two fibres, in double precision: normalisation, inversion, sampling, and the errata they mend.
 
 mod chiang;
+mod chiang_lobes;
 mod chiang_sampling;
 mod errata;
 mod kajiya_kay;

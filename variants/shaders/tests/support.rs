@@ -89,7 +89,9 @@ impl Random {
             let mut values: Values = P::default().values();
             let is_narrow = self.one_in(4);
             for field in P::FIELDS {
-                if field.instead_of.is_some() && self.one_in(2) {
+                // A tilt by another name is no number of its own, and leaves the draws of other fields as they are.
+                if field.instead_of == Some("tilt") || field.instead_of.is_some() && self.one_in(2)
+                {
                     continue;
                 }
                 match (field.kind, field.draw) {
@@ -111,6 +113,20 @@ impl Random {
                         if is_narrow && let Some(narrow) = field.narrow {
                             numbers.fill(narrow);
                         }
+                        values = values.with(field.name, &numbers);
+                    }
+                    // Fields that are left out as a rule: in half of the materials they have more than their default, or less if
+                    // that is the most. They leave the draws of other fields as they are.
+                    (_, None) if field.optional && Random(!self.0).one_in(2) => {
+                        let mut own =
+                            Random(!self.0 ^ field.name.bytes().map(u64::from).sum::<u64>());
+                        let most = field.range().map_or(f32::MAX, |[_, most]| most);
+                        let vary = |x: &f32| {
+                            let [low, high] = if *x < most { [1.02, 1.96] } else { [0.5, 0.98] };
+                            x * own.range(low, high)
+                        };
+                        let numbers: Vec<f32> =
+                            values.numbers(field.name).iter().map(vary).collect();
                         values = values.with(field.name, &numbers);
                     }
                     _ => {}

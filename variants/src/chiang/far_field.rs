@@ -64,17 +64,18 @@ impl<const PACKETS: usize> Default for OffsetNodes<PACKETS> {
 }
 
 impl ChiangDesc {
-    /// Returns the number of nodes of `h` that the far field of this roughness needs: `1.7 / s`, with `s` the
-    /// [scale](Self::azimuthal_scale) of the azimuth, in whole packets of eight. Below a `beta_n` of .05, drawing `h` per hit is cheaper.
+    /// Returns the number of nodes of `h` that the far field of this roughness needs: `1.7 / s`, with `s` the least azimuthal
+    /// [scale](Self::azimuthal_scale) of a lobe, in whole packets of eight. Below a `beta_n` of .05, drawing `h` per hit is cheaper.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "from 8 to 10,300"
+        reason = "from 8 to 103,000"
     )]
     #[inline]
     #[must_use]
     pub fn far_field_nodes(&self) -> usize {
-        let nodes = 1.7 / self.azimuthal_scale();
+        let [r, tt, trt] = self.width_n;
+        let nodes = 1.7 / (r.min(tt).min(trt) * self.azimuthal_scale());
         8 * (libm::ceilf(nodes / 8.0).max(1.0) as usize)
     }
 }

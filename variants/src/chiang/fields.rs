@@ -1,14 +1,47 @@
 //! Registry entry of the energy-conserving fibre, and its parameters as fields.
 
-use super::params::{INDEX, ROUGHNESS, SHARE, TILT};
+use super::params::{CUTICLE, INDEX, ROUGHNESS, SHARE, TILT, WIDTH};
 use super::{Chiang, ChiangDesc, ChiangMaterial, ChiangParams, Shifts, stand_ins};
 use crate::{Field, Kind, Parameters, Registered, Values};
+use core::f64::consts::PI;
 use hairis::ParamError;
 use hairis::model::Precision;
-use hairis::params::Rule;
+use hairis::params::{Pigments, Rule, melanin_concentrations};
 use hairis::simd::Lanes;
 
 const SHIFTS: [(&str, Shifts); 2] = [("d-eon", Shifts::DEon), ("small-angle", Shifts::SmallAngle)];
+
+const LOBES: Kind = Kind::Numbers(&["r", "tt", "trt"]);
+const PIGMENTS: [&str; 2] = ["d-eon", "cycles"];
+
+impl ChiangDesc {
+    /// Returns the description that the values of the fields form, in any type of number. Nothing is checked, no field stands in for
+    /// another, and a word is that of [`Shifts::default`].
+    ///
+    /// # Panics
+    ///
+    /// Panics if the values belong to the fields of another model.
+    #[inline]
+    #[must_use]
+    pub fn of_values<T: Copy>(values: &Values<T>) -> ChiangDesc<T> {
+        let [beta_m, beta_n, tilt, eta] = [0, 1, 2, 3].map(|index| values.number_at(index));
+        ChiangDesc {
+            beta_m,
+            beta_n,
+            tilt,
+            eta,
+            sigma_a: values.get_at(4),
+            shifts: Shifts::default(),
+            tint_r: values.get_at(10),
+            tint_tt: values.get_at(11),
+            tint_trt: values.get_at(12),
+            width_m: values.get_at(13),
+            width_n: values.get_at(14),
+            eumelanin: values.get_at(15),
+            pheomelanin: values.get_at(16),
+        }
+    }
+}
 
 impl Parameters for ChiangParams {
     const FIELDS: &'static [Field] = &[
@@ -55,6 +88,52 @@ impl Parameters for ChiangParams {
             "Formula of the lobes' shifts.",
         )
         .optional(),
+        Field::new(
+            "cuticle_angle",
+            Kind::Number,
+            CUTICLE,
+            "The tilt as MaterialX has it: pi (angle - 1/2) rad.",
+        )
+        .instead_of("tilt"),
+        Field::new("tint_r", Kind::Rgb, SHARE, "Tint of R.").optional(),
+        Field::new("tint_tt", Kind::Rgb, SHARE, "Tint of TT.").optional(),
+        Field::new("tint_trt", Kind::Rgb, SHARE, "Tint of TRT and of the rest.").optional(),
+        Field::new(
+            "width_m",
+            LOBES,
+            WIDTH,
+            "Longitudinal widths of the lobes, in widths of beta_m.",
+        )
+        .optional(),
+        Field::new(
+            "width_n",
+            LOBES,
+            WIDTH,
+            "Azimuthal widths of the lobes, in widths of beta_n.",
+        )
+        .optional(),
+        Field::new(
+            "eumelanin",
+            Kind::Rgb,
+            Rule::NotNegative,
+            "Absorption of a unit of eumelanin.",
+        )
+        .named(
+            &PIGMENTS,
+            &[&Pigments::D_EON.eumelanin, &Pigments::CYCLES.eumelanin],
+        )
+        .optional(),
+        Field::new(
+            "pheomelanin",
+            Kind::Rgb,
+            Rule::NotNegative,
+            "Absorption of a unit of pheomelanin.",
+        )
+        .named(
+            &PIGMENTS,
+            &[&Pigments::D_EON.pheomelanin, &Pigments::CYCLES.pheomelanin],
+        )
+        .optional(),
     ];
     const PRESETS: &'static [(&'static str, Self)] = &Self::presets();
 
@@ -72,21 +151,30 @@ impl Parameters for ChiangParams {
             .with("eta", &[d.eta])
             .with("sigma_a", &d.sigma_a)
             .with_word("shifts", shifts)
+            .with("tint_r", &d.tint_r)
+            .with("tint_tt", &d.tint_tt)
+            .with("tint_trt", &d.tint_trt)
+            .with("width_m", &d.width_m)
+            .with("width_n", &d.width_n)
+            .with("eumelanin", &d.eumelanin)
+            .with("pheomelanin", &d.pheomelanin)
     }
 
     #[inline]
     fn from_values(values: &Values) -> Result<Self, ParamError> {
         let word = values.word("shifts");
         let desc = ChiangDesc {
-            beta_m: values.number_at(0),
-            beta_n: values.number_at(1),
-            tilt: values.number_at(2),
-            eta: values.number_at(3),
-            sigma_a: values.get_at(4),
             shifts: SHIFTS
                 .iter()
                 .find(|(one, _)| *one == word)
                 .map_or(Shifts::default(), |(_, shifts)| *shifts),
+            ..ChiangDesc::of_values(values)
+        };
+        let desc = if values.has("cuticle_angle") {
+            let [angle] = values.get("cuticle_angle");
+            desc.with_cuticle_angle(angle)?
+        } else {
+            desc
         };
         let desc = if values.has("melanin") {
             let [eumelanin, pheomelanin] = values.get("melanin");
@@ -105,11 +193,23 @@ impl Parameters for ChiangParams {
     #[inline]
     fn chain(values: &Values, by_kept: &Values<f64>) -> Values<f64> {
         let (mut by, by_absorption) = (*by_kept, by_kept.get_at(4));
+        let pigments = ChiangDesc::of_values(values).pigments();
+        let mut by_melanin = |melanin: [f32; 2]| {
+            let [eumelanin, pheomelanin] =
+                melanin.map(|amount| by_absorption.map(|by| by * f64::from(amount)));
+            by = by
+                .with("eumelanin", &eumelanin)
+                .with("pheomelanin", &pheomelanin);
+        };
         if values.has("melanin") {
-            by = by.with("melanin", &stand_ins::by_melanin(by_absorption));
+            by_melanin(values.get("melanin"));
+            by = by.with("melanin", &stand_ins::by_melanin(&pigments, by_absorption));
         } else if values.has("melanin_amount") {
-            let amount = values.get("melanin_amount");
-            let by_amount = stand_ins::by_melanin_amount(amount, by_absorption);
+            let [amount, redness] = values.get("melanin_amount");
+            // A legal amount is never refused.
+            by_melanin(melanin_concentrations(amount, redness).unwrap_or_default());
+            let by_amount =
+                stand_ins::by_melanin_amount(&pigments, [amount, redness], by_absorption);
             by = by.with("melanin_amount", &by_amount);
         } else if values.has("color") {
             let (color, beta_n) = (values.get("color"), values.number_at(1));
@@ -117,6 +217,9 @@ impl Parameters for ChiangParams {
             by = by
                 .with("beta_n", &[by_kept.number_at(1) + by_beta_n])
                 .with("color", &by_color);
+        }
+        if values.has("cuticle_angle") {
+            by = by.with("cuticle_angle", &[PI * by_kept.number_at(2)]);
         }
         by
     }
@@ -139,8 +242,7 @@ impl<const BY_CHANNEL: bool> Registered for Chiang<BY_CHANNEL> {
 
     #[inline]
     fn constants<W: Precision>(values: &Values<W::Lane>) -> ChiangMaterial<W::Lane> {
-        let [beta_m, beta_n, tilt, eta] = [0, 1, 2, 3].map(|index| values.number_at(index));
         let small_angle = W::Lane::splat(0.5).lt(values.number_at(8));
-        ChiangMaterial::new::<W>([beta_m, beta_n, tilt, eta], values.get_at(4), small_angle)
+        ChiangMaterial::new::<W>(&ChiangDesc::of_values(values), small_angle)
     }
 }

@@ -1,28 +1,31 @@
 //! Constants of the energy-conserving fibre, which are computed once per material and once per hit.
 
-use super::params;
+use super::{ChiangDesc, params};
+use core::f32::consts::LN_2;
 use hairis::model::math::gaussian_and_complement;
 use hairis::model::{Direction, Precision};
 use hairis::simd::{Broadcast, Lanes, Pair, lane_struct, lanes3, store4};
 use hairis::{Hit, PerLobe};
 
 lane_struct! {
-    /// Widths of the lobes. Arrays of four hold R, TT, TRT and the rest.
+    /// Widths of the lobes. Arrays of four hold R, TT, TRT and the rest, whose widths are those of TRT.
     pub(super) struct ChiangWidths {
-        /// Longitudinal variance v.
-        pub(super) variance: [C; 4],
+        /// Factor of the longitudinal sampler: `-v ln 2`, of the longitudinal variance v.
+        pub(super) minus_v_ln_2: [C; 4],
         /// Inverse of the variance: `1 / v`.
         pub(super) inv_variance: [C; 4],
         /// Range of the longitudinal sampler: `1 - exp(-2 / v)`.
         pub(super) cut: [C; 4],
         /// Norm of `M N`: `1 / (v (1 - exp(-2 / v)) s K)`, and for the rest `2 pi` in place of `s K`.
         pub(super) norm: [C; 4],
-        /// Scale s of the azimuthal logistic, rad.
-        pub(super) scale: C,
+        /// Factor of the azimuthal sampler: `s (ln 2) / 2`, of the scale s of the azimuthal logistic, rad.
+        pub(super) scale_ln_2: [C; 4],
         /// Factor from a half azimuth to the argument of a Gaussian: `4 / s`.
-        pub(super) four_inv_scale: C,
+        pub(super) four_inv_scale: [C; 4],
         /// Part of the logistic within half a turn: `K = tanh(pi / 2s)`.
-        pub(super) kept: C,
+        pub(super) kept: [C; 4],
+        /// Number below 0 if the azimuthal scales differ. Otherwise samples look nothing up, unless they record.
+        pub(super) differ: C,
     }
 }
 
@@ -37,6 +40,10 @@ lane_struct! {
         pub(super) sin_shift: [C; 4],
         /// Cosine of each lobe's shift.
         pub(super) cos_shift: [C; 4],
+        /// Colour that multiplies the attenuation, with the channels of R first; the rest has the colour of TRT.
+        pub(super) tint: [C; 9],
+        /// Number below 0 if a tint is not 1. Otherwise hits skip the tints, unless they record.
+        pub(super) tinted: C,
         /// Widths of the lobes.
         pub(super) widths: ChiangWidths<C>,
     }
@@ -70,39 +77,48 @@ lane_struct! {
 
 impl<L: Lanes<Stored = L>> ChiangMaterial<L> {
     /// Computes the constants of a description, whose values lie in the ranges of checked parameters. The mask is set for
-    /// [`Shifts::SmallAngle`](super::Shifts::SmallAngle).
+    /// [`Shifts::SmallAngle`](super::Shifts::SmallAngle), in place of the word of the description.
     #[inline]
     #[must_use]
-    pub(super) fn new<W: Precision<Lane = L>>(
-        [beta_m, beta_n, tilt, eta]: [L; 4],
-        sigma_a: [L; 3],
-        small_angle: L::Mask,
-    ) -> Self {
+    pub(super) fn new<W: Precision<Lane = L>>(fiber: &ChiangDesc<L>, small_angle: L::Mask) -> Self {
+        let (eta, tint) = (fiber.eta, [fiber.tint_r, fiber.tint_tt, fiber.tint_trt]);
         L::stage("widths of the lobes by the roughnesses");
         let (c, one) = (W::constant, W::constant(1.0));
         let (v, s) = (
-            params::variance(W::of(beta_m)),
-            params::scale(W::of(beta_n)),
+            params::variance(W::of(fiber.beta_m)),
+            params::scale(W::of(fiber.beta_n)),
         );
-        let kept = (c(core::f64::consts::FRAC_PI_2) / s).tanh();
         let index = W::of(eta);
-        let variance = [v, c(0.25) * v, c(4.0) * v, c(4.0) * v];
+        let [r, tt, trt] = fiber.width_m.map(|width| W::of(width) * W::of(width) * v);
+        let variance = [r, tt, trt, trt];
         let cut = variance.map(|v| (c(2.0) / v).one_less_exp());
-        let turn = [s * kept, s * kept, s * kept, c(core::f64::consts::TAU)];
+        let scale = fiber.width_n.map(|width| W::of(width) * s);
+        let kept = scale.map(|s| (c(core::f64::consts::FRAC_PI_2) / s).tanh());
+        let [r, tt, trt] = [0, 1, 2].map(|p| scale[p] * kept[p]);
+        let turn = [r, tt, trt, c(core::f64::consts::TAU)];
         L::stage("shift of each lobe by the tilt of the scales");
-        let shift = params::shifts(W::of(tilt), index, small_angle).map(W::sin_cos);
+        let shift = params::shifts(W::of(fiber.tilt), index, small_angle).map(W::sin_cos);
         L::stage("normalisation of the lobes");
+        let by_lobe = |[r, tt, trt]: [L; 3]| [r, tt, trt, trt];
+        let [width_r, width_tt, width_trt] = fiber.width_n;
+        let (wider_tt, wider_trt) = (width_tt - width_r, width_trt - width_r);
         let widths = ChiangWidths {
-            variance: variance.map(W::rounded),
+            minus_v_ln_2: variance.map(|v| v.rounded() * -LN_2),
             inv_variance: variance.map(|v| (one / v).rounded()),
             cut: cut.map(W::rounded),
             norm: core::array::from_fn(|p| (one / (variance[p] * cut[p] * turn[p])).rounded()),
-            scale: s.rounded(),
-            four_inv_scale: (c(4.0) / s).rounded(),
-            kept: kept.rounded(),
+            scale_ln_2: by_lobe(scale.map(|s| s.rounded() * (0.5 * LN_2))),
+            four_inv_scale: by_lobe(scale.map(|s| (c(4.0) / s).rounded())),
+            kept: by_lobe(kept.map(W::rounded)),
+            differ: -(wider_tt * wider_tt + wider_trt * wider_trt),
         };
+        L::stage("whether a lobe is tinted: differences that are exact, and 0 without tints");
+        let missing = tint.as_flattened().iter().map(|x| L::splat(1.0) - *x);
+        let missing = missing.fold(L::splat(0.0), |sum, x| sum + x);
         Self {
-            twice_sigma_a: sigma_a.map(|sigma| (sigma * 2.0).min(L::splat(f32::MAX))),
+            twice_sigma_a: fiber
+                .sigma_a
+                .map(|sigma| (sigma * 2.0).min(L::splat(f32::MAX))),
             // The last number keeps its digits next to an index of 1, and is exact in double precision.
             eta: [
                 eta * 2.0,
@@ -111,6 +127,8 @@ impl<L: Lanes<Stored = L>> ChiangMaterial<L> {
             ],
             sin_shift: shift.map(|[sin, _]| sin.rounded()),
             cos_shift: shift.map(|[_, cos]| cos.rounded()),
+            tint: core::array::from_fn(|place| tint[place / 3][place % 3]),
+            tinted: -missing,
             widths,
         }
     }
@@ -220,12 +238,32 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         let (t, absorbed) = gaussian_and_complement(m.twice_sigma_a[channel].lanes() * path_length);
         let tt = passed * passed * t;
         let trt = tt * (f * t);
-        attenuation[3 + channel] = tt.store();
-        attenuation[6 + channel] = trt.store();
         // Divided by the loss of a passage, `1 - F T`, which is the light that does not return to the inside.
-        attenuation[9 + channel] =
-            L::quotient(trt * (f * t), f.mul_add(absorbed, passed).max(c(1e-30))).store();
+        let rest = L::quotient(trt * (f * t), f.mul_add(absorbed, passed).max(c(1e-30)));
+        // On one lane the products take fewer instructions than the branch below.
+        if is_one_lane::<L>() {
+            let [r_tint, tt_tint, trt_tint] =
+                [m.tint[channel], m.tint[3 + channel], m.tint[6 + channel]];
+            attenuation[channel] = (f * r_tint.lanes()).alone().store();
+            attenuation[3 + channel] = (tt * tt_tint.lanes()).store();
+            attenuation[6 + channel] = (trt * trt_tint.lanes()).alone().store();
+            attenuation[9 + channel] = (rest * trt_tint.lanes()).alone().store();
+        } else {
+            attenuation[3 + channel] = tt.store();
+            attenuation[6 + channel] = trt.store();
+            attenuation[9 + channel] = rest.store();
+        }
         channel += 1;
+    }
+
+    L::stage("tint of each lobe");
+    if !is_one_lane::<L>() && C::any_below_0(&m.tinted) {
+        let mut place = 0;
+        while place < 12 {
+            let tint: L = m.tint[if place < 9 { place } else { place - 3 }].lanes();
+            attenuation[place] = (tint * attenuation[place].lanes()).store();
+            place += 1;
+        }
     }
 
     L::stage("azimuth of each lobe");
@@ -247,10 +285,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         .mul_add(Four::splat(-0.5), Four::splat(1.5));
 
     L::stage("cone of each lobe: theta_o less the shift");
-    // Past the pole, the cone folds back.
-    let (sin, cos) = (four(&m.sin_shift), four(&m.cos_shift));
-    let sin_cone = Four::difference_of_products(same(sin_o), cos, same(cos_o), sin);
-    let cos_cone = Four::difference_of_products(same(cos_o), cos, same(-sin_o), sin).abs();
+    let [sin_cone, cos_cone] = cones(m, [sin_o, cos_o]);
     let concentration = cos_cone * four(&m.widths.inv_variance);
 
     ChiangPrepared {
@@ -268,6 +303,45 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         path_length: path_length.store(),
         widths: m.widths.spread::<L>(),
     }
+}
+
+/// Returns true if `L` is one lane, for which compilers make vectors of equal steps.
+#[inline(always)]
+const fn is_one_lane<L: Lanes>() -> bool {
+    size_of::<L>() == size_of::<f32>()
+}
+
+/// Computes sine and cosine of each lobe's cone, by those of the inclination of `wo`, which is the cone of the rest. Past the pole, a
+/// cone folds back.
+#[inline(always)]
+fn cones<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, [sin_o, cos_o]: [L; 2]) -> [Four<L>; 2] {
+    let (sin, cos) = (four(&m.sin_shift), four(&m.cos_shift));
+    // On one lane compilers make one vector of four lobes. Elsewhere three lobes are less than four.
+    if is_one_lane::<L>() {
+        return [
+            Four::difference_of_products(same(sin_o), cos, same(cos_o), sin),
+            Four::difference_of_products(same(cos_o), cos, same(-sin_o), sin).abs(),
+        ];
+    }
+    let (Pair(sin, Pair(sin_trt, _)), Pair(cos, Pair(cos_trt, _))) = (sin, cos);
+    let (sin_two, cos_two, minus_two) =
+        (Pair(sin_o, sin_o), Pair(cos_o, cos_o), Pair(-sin_o, -sin_o));
+    [
+        Pair(
+            Pair::difference_of_products(sin_two, cos, cos_two, sin),
+            Pair(
+                L::difference_of_products(sin_o, cos_trt, cos_o, sin_trt),
+                sin_o,
+            ),
+        ),
+        Pair(
+            Pair::difference_of_products(cos_two, cos, minus_two, sin).abs(),
+            Pair(
+                L::difference_of_products(cos_o, cos_trt, -sin_o, sin_trt).abs(),
+                cos_o,
+            ),
+        ),
+    ]
 }
 
 /// Returns the attenuation of lobe `p`, linear RGB.
@@ -324,7 +398,8 @@ pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(
 impl ChiangPrepared<f32> {
     /// Returns the Fresnel reflectance F at the hit. With F and the [path length](Self::path_length) l, a spectral host computes
     /// the attenuations for an absorption sigma. With `T = exp(-sigma l)`, R has `F`, TT has `(1 - F)^2 T`, TRT has
-    /// `(1 - F)^2 F T^2`, and the rest has `(1 - F)^2 F^2 T^3 / (1 - F T)`.
+    /// `(1 - F)^2 F T^2`, and the rest has `(1 - F)^2 F^2 T^3 / (1 - F T)`,
+    /// each times the tint of the lobe.
     #[inline]
     #[must_use]
     pub const fn fresnel(&self) -> f32 {

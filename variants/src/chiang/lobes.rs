@@ -67,7 +67,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
         Four::splat(FRAC_PI_2) - half,
         half,
     );
-    let exponent = half * same(m.four_inv_scale.lanes());
+    let exponent = half * four(&m.four_inv_scale);
 
     L::stage("azimuth: logistic of each distance");
     // (1 + e)^-2, by one division.

@@ -3,7 +3,7 @@
 use core::f32::consts::{FRAC_PI_4, PI};
 use hairis::ParamError;
 use hairis::model::Precision;
-use hairis::params::{Rule, melanin_absorption, melanin_concentrations};
+use hairis::params::{Pigments, Rule, melanin_absorption, melanin_concentrations};
 use hairis::simd::Lanes;
 
 /// Range of accepted roughnesses.
@@ -12,6 +12,10 @@ pub(super) const ROUGHNESS: Rule = Rule::Range([1e-3, 1.0]);
 pub(super) const TILT: Rule = Rule::Range([-FRAC_PI_4, FRAC_PI_4]);
 /// Range of accepted indices of refraction.
 pub(super) const INDEX: Rule = Rule::Range([1.0, 4.0]);
+/// Range of accepted cuticle angles of `MaterialX`, whose ends are those of the tilt.
+pub(super) const CUTICLE: Rule = Rule::Range([0.25, 0.75]);
+/// Range of the factors on a lobe's width.
+pub(super) const WIDTH: Rule = Rule::Range([0.1, 10.0]);
 /// Range of accepted colours and of the artist's amounts.
 pub(super) const SHARE: Rule = Rule::Range([0.0, 1.0]);
 
@@ -39,7 +43,10 @@ pub enum Shifts {
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
+    serde(
+        deny_unknown_fields,
+        bound(deserialize = "T: Copy + From<f32> + serde::Deserialize<'de>")
+    )
 )]
 pub struct ChiangDesc<T = f32> {
     /// Longitudinal roughness, in `[1e-3, 1]`; .3 is a width of 16.7 degrees, see [`width_deg`](Self::width_deg).
@@ -55,6 +62,46 @@ pub struct ChiangDesc<T = f32> {
     /// Formula of the lobes' shifts.
     #[cfg_attr(feature = "serde", serde(default))]
     pub shifts: Shifts,
+    /// Tint of R, linear RGB in `[0, 1]`, which multiplies the attenuation of the lobe.
+    #[cfg_attr(feature = "serde", serde(default = "no_tint"))]
+    pub tint_r: [T; 3],
+    /// Tint of TT, linear RGB in `[0, 1]`.
+    #[cfg_attr(feature = "serde", serde(default = "no_tint"))]
+    pub tint_tt: [T; 3],
+    /// Tint of TRT and of the rest, linear RGB in `[0, 1]`.
+    #[cfg_attr(feature = "serde", serde(default = "no_tint"))]
+    pub tint_trt: [T; 3],
+    /// Longitudinal widths of R, TT and TRT in multiples of [`width_deg`](Self::width_deg), each in `[.1, 10]`. The rest is as wide as TRT.
+    #[cfg_attr(feature = "serde", serde(default = "width_m"))]
+    pub width_m: [T; 3],
+    /// Azimuthal widths of R, TT and TRT in multiples of [`azimuthal_scale`](Self::azimuthal_scale), each in `[.1, 10]`.
+    #[cfg_attr(feature = "serde", serde(default = "width_n"))]
+    pub width_n: [T; 3],
+    /// Absorption per fibre radius of a unit of eumelanin, linear RGB, each finite and at least 0:
+    /// [`with_melanin`](Self::with_melanin) and [`with_melanin_amount`](Self::with_melanin_amount) read it.
+    #[cfg_attr(feature = "serde", serde(default = "eumelanin"))]
+    pub eumelanin: [T; 3],
+    /// Absorption of a unit of pheomelanin, as that of eumelanin.
+    #[cfg_attr(feature = "serde", serde(default = "pheomelanin"))]
+    pub pheomelanin: [T; 3],
+}
+
+/// Defaults of the fields that files may leave out, for serde.
+#[cfg(feature = "serde")]
+macro_rules! defaults {
+    ($($name:ident: $field:ident;)*) => { $(
+        fn $name<T: From<f32>>() -> [T; 3] {
+            ChiangDesc::DEFAULT.$field.map(T::from)
+        }
+    )* };
+}
+#[cfg(feature = "serde")]
+defaults! {
+    no_tint: tint_r;
+    width_m: width_m;
+    width_n: width_n;
+    eumelanin: eumelanin;
+    pheomelanin: pheomelanin;
 }
 
 impl<T: Copy> ChiangDesc<T> {
@@ -69,6 +116,13 @@ impl<T: Copy> ChiangDesc<T> {
             eta: convert(self.eta),
             sigma_a: self.sigma_a.map(&convert),
             shifts: self.shifts,
+            tint_r: self.tint_r.map(&convert),
+            tint_tt: self.tint_tt.map(&convert),
+            tint_trt: self.tint_trt.map(&convert),
+            width_m: self.width_m.map(&convert),
+            width_n: self.width_n.map(&convert),
+            eumelanin: self.eumelanin.map(&convert),
+            pheomelanin: self.pheomelanin.map(&convert),
         }
     }
 }
@@ -85,10 +139,61 @@ impl ChiangDesc {
             eta: 1.55,
             sigma_a: melanin_absorption([eumelanin, pheomelanin]),
             shifts: Shifts::DEon,
+            tint_r: [1.0; 3],
+            tint_tt: [1.0; 3],
+            tint_trt: [1.0; 3],
+            // After Marschner et al. 2003.
+            width_m: [1.0, 0.5, 2.0],
+            width_n: [1.0; 3],
+            eumelanin: Pigments::D_EON.eumelanin,
+            pheomelanin: Pigments::D_EON.pheomelanin,
         }
     }
 
-    /// Sets the absorption of these concentrations of melanin: see [`melanin_absorption`].
+    /// Sets the tilt from a cuticle angle as `MaterialX` has it: `pi (angle - 1/2)` radians.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if `angle` is outside `[.25, .75]`, which are the ends of the range of [`tilt`](Self::tilt).
+    #[inline]
+    pub fn with_cuticle_angle(self, angle: f32) -> Result<Self, ParamError> {
+        CUTICLE.check("cuticle_angle", &[angle])?;
+        Ok(Self {
+            tilt: (PI * (angle - 0.5)).clamp(-FRAC_PI_4, FRAC_PI_4),
+            ..self
+        })
+    }
+
+    /// Sets the pigments, of which later calls make melanin: see [`with_melanin`](Self::with_melanin).
+    ///
+    /// ```
+    /// use hairis::params::Pigments;
+    /// use hairis_variants::ChiangDesc;
+    /// let auburn = ChiangDesc::default().with_pigments(Pigments::CYCLES).with_melanin_amount(0.7, 0.6)?;
+    /// assert!((auburn.sigma_a[0] - 0.491_46).abs() < 1e-4);
+    /// # Ok::<(), hairis::ParamError>(())
+    /// ```
+    #[inline]
+    #[must_use]
+    pub const fn with_pigments(self, pigments: Pigments) -> Self {
+        Self {
+            eumelanin: pigments.eumelanin,
+            pheomelanin: pigments.pheomelanin,
+            ..self
+        }
+    }
+
+    /// Returns the pigments.
+    #[inline]
+    #[must_use]
+    pub const fn pigments(&self) -> Pigments {
+        Pigments {
+            eumelanin: self.eumelanin,
+            pheomelanin: self.pheomelanin,
+        }
+    }
+
+    /// Sets the absorption of these concentrations of melanin: see [`Pigments::absorption`]. Set the pigments first.
     ///
     /// # Errors
     ///
@@ -98,7 +203,7 @@ impl ChiangDesc {
         let melanin = [eumelanin, pheomelanin];
         Rule::NotNegative.check("melanin", &melanin)?;
         Ok(Self {
-            sigma_a: melanin_absorption(melanin).map(|c| c.min(f32::MAX)),
+            sigma_a: self.pigments().absorption(melanin).map(|c| c.min(f32::MAX)),
             ..self
         })
     }
@@ -155,15 +260,15 @@ impl ChiangDesc {
             .map(|sigma| libm::expf(-libm::sqrtf(sigma) * scale))
     }
 
-    /// Returns the longitudinal width of R in degrees: `sqrt(v)` of [`longitudinal_variance`](Self::longitudinal_variance).
+    /// Returns the longitudinal width of `beta_m` in degrees: `sqrt(v)` of [`longitudinal_variance`](Self::longitudinal_variance).
     #[inline]
     #[must_use]
     pub fn width_deg(&self) -> f32 {
         libm::sqrtf(self.longitudinal_variance()) * 180.0 / PI
     }
 
-    /// Returns the longitudinal variance v of R: `(.726 m + .812 m^2 + 3.7 m^20)^2`, with `m` the `beta_m`. TT has a quarter of this
-    /// variance, and TRT and the rest have four times as much.
+    /// Returns the longitudinal variance v of `beta_m`: `(.726 m + .812 m^2 + 3.7 m^20)^2`, with `m` the `beta_m`. A lobe has this variance
+    /// times the square of its [`width_m`](Self::width_m): by default R all, TT a quarter, and TRT and the rest four times as much.
     ///
     /// - Source: Chiang et al. 2016, section 4.
     #[inline]
@@ -172,7 +277,8 @@ impl ChiangDesc {
         variance(f64::from(self.beta_m)).rounded()
     }
 
-    /// Returns the scale s of the azimuthal logistic in radians: `sqrt(pi / 8) (.265 n + 1.194 n^2 + 5.372 n^22)`, with `n` the `beta_n`.
+    /// Returns the scale s of the azimuthal logistic in radians: `sqrt(pi / 8) (.265 n + 1.194 n^2 + 5.372 n^22)`, with `n` the `beta_n`. A
+    /// lobe has this scale times its [`width_n`](Self::width_n).
     ///
     /// - Source: Chiang et al. 2016, section 4.
     #[inline]
@@ -194,9 +300,15 @@ impl ChiangDesc {
 /// tails.
 #[inline]
 pub(super) fn variance<W: Precision>(m: W) -> W {
-    let c = W::constant;
-    let root = m * (c(0.726) + m * (c(0.812) + c(3.7) * m.power(18)));
+    let root = root(m);
     root * root
+}
+
+/// Returns the longitudinal width of R for a `beta_m`, which is the root of its variance.
+#[inline]
+pub(super) fn root<W: Precision>(m: W) -> W {
+    let c = W::constant;
+    m * (c(0.726) + m * (c(0.812) + c(3.7) * m.power(18)))
 }
 
 /// Returns the scale of the azimuthal logistic for a `beta_n`, in radians.
@@ -271,6 +383,13 @@ impl ChiangParams {
         TILT.check("tilt", &[desc.tilt])?;
         INDEX.check("eta", &[desc.eta])?;
         Rule::NotNegative.check("sigma_a", &desc.sigma_a)?;
+        SHARE.check("tint_r", &desc.tint_r)?;
+        SHARE.check("tint_tt", &desc.tint_tt)?;
+        SHARE.check("tint_trt", &desc.tint_trt)?;
+        WIDTH.check("width_m", &desc.width_m)?;
+        WIDTH.check("width_n", &desc.width_n)?;
+        Rule::NotNegative.check("eumelanin", &desc.eumelanin)?;
+        Rule::NotNegative.check("pheomelanin", &desc.pheomelanin)?;
         Ok(Self(*desc))
     }
 

@@ -1,7 +1,7 @@
 //! Sampling of a direction of one lobe by three uniform numbers.
 
 use super::ChiangPrepared;
-use core::f32::consts::{LN_2, PI};
+use core::f32::consts::PI;
 use hairis::model::Direction;
 use hairis::model::math::{log2, log2_one_plus, sin_cos_half_turn};
 use hairis::simd::{Broadcast, Choice, Lanes};
@@ -19,8 +19,8 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
 
     L::stage("inclination: a point about the lobe's cone");
     // After d'Eon 2013: 1 less the cosine of the angle from the cone. The cosine of the turn is even.
-    let cut = C::look_up(&m.cut, lobe);
-    let by = C::look_up(&m.variance, lobe) * -LN_2;
+    let cut = C::look_up_three(&m.cut, lobe);
+    let by = C::look_up_three(&m.minus_v_ln_2, lobe);
     let drop = zero.max((log2_one_plus(-(xi[1] * cut)) * by).min(two));
     let radius = (drop * (two - drop)).sqrt();
     let (minus_cos, sin) = sin_cos_half_turn((xi[2] - 0.5) * PI);
@@ -36,10 +36,19 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
 
     L::stage("azimuth: the trimmed logistic by inversion");
     // The trimmed logistic by inversion; the azimuth of the rest is uniform.
-    let kept = m.kept.lanes();
+    // A branch costs less than two tables that all lanes share, unless a level has an instruction for them as levels that fuse do.
+    let has_branch = L::FUSES == Some(false) && size_of::<C>() == size_of::<f32>();
+    let (kept, scale) = if !has_branch || C::any_below_0(&m.differ) {
+        (
+            C::look_up_three(&m.kept, lobe),
+            C::look_up_three(&m.scale_ln_2, lobe),
+        )
+    } else {
+        (m.kept[0].lanes(), m.scale_ln_2[0].lanes())
+    };
     let edge = (one - kept) * 0.5;
     let ratio = L::quotient(xi[0].mul_add(kept, edge), (one - xi[0]).mul_add(kept, edge));
-    let logistic = log2(ratio) * (m.scale.lanes() * (0.5 * LN_2));
+    let logistic = log2(ratio) * scale;
     let uniform = (xi[0] - 0.5) * PI;
     let half_turn = c(0.5 * PI);
     let half = L::select(lobe.equals(3), uniform, logistic)

@@ -1,20 +1,24 @@
 //! Derivatives by the fields that stand in for the absorption: colour and melanin.
 
 use super::params::{COLOR, LEAST_COLOR};
-use hairis::params::{melanin_absorption, melanin_concentrations};
+use hairis::params::{Pigments, melanin_concentrations};
 
 /// Returns the derivatives by concentrations of melanin, of which the absorption is a sum, given those by the absorption.
 #[inline]
-pub(super) fn by_melanin(by_absorption: [f64; 3]) -> [f64; 2] {
-    [[1.0, 0.0], [0.0, 1.0]].map(|unit| dot(melanin_absorption(unit).map(f64::from), by_absorption))
+pub(super) fn by_melanin(pigments: &Pigments, by_absorption: [f64; 3]) -> [f64; 2] {
+    [pigments.eumelanin, pigments.pheomelanin].map(|unit| dot(unit.map(f64::from), by_absorption))
 }
 
 /// Returns the derivatives by an artist's amount and redness of melanin, given those by the absorption.
 ///
 /// With `q = -ln(1 - amount)`, the concentrations are `q (1 - redness)` and `q redness`. Where `q` is largest, the amount has no effect.
 #[inline]
-pub(super) fn by_melanin_amount([amount, redness]: [f32; 2], by_absorption: [f64; 3]) -> [f64; 2] {
-    let [eumelanin, pheomelanin] = by_melanin(by_absorption);
+pub(super) fn by_melanin_amount(
+    pigments: &Pigments,
+    [amount, redness]: [f32; 2],
+    by_absorption: [f64; 3],
+) -> [f64; 2] {
+    let [eumelanin, pheomelanin] = by_melanin(pigments, by_absorption);
     // A legal amount is never refused.
     let quantity = |amount| melanin_concentrations(amount, 0.0).map_or(0.0, |[all, _]| all);
     let (q, most) = (quantity(amount), quantity(1.0));

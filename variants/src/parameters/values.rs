@@ -11,7 +11,7 @@ pub enum FieldError {
     Name,
     /// The field has this count of numbers, and another count was given.
     Count(usize),
-    /// The field has these words, and none of them was given; the list is empty for a field of numbers.
+    /// The field has these words, and none of them was given; the list is empty for a field of numbers without named values.
     Word(&'static [&'static str]),
 }
 
@@ -37,7 +37,7 @@ pub struct Values<T = f32> {
     given: u32,
 }
 
-const MOST: usize = 32;
+const MOST: usize = 48;
 
 impl<T: Copy + Default> Values<T> {
     /// Returns values of which no field has been set yet.
@@ -233,7 +233,8 @@ impl Values {
     /// Largest count of numbers that a model may have, and of fields.
     pub const MOST: usize = MOST;
 
-    /// Sets the word of the field `name`, and removes the values of the fields that it takes the place of.
+    /// Sets the word of the field `name`, or the numbers that a field of numbers has by this name, and removes the values of the fields
+    /// that it takes the place of.
     ///
     /// # Errors
     ///
@@ -241,8 +242,12 @@ impl Values {
     #[inline]
     pub fn set_word(&mut self, name: &str, word: &str) -> Result<(), FieldError> {
         let index = self.index(name).ok_or(FieldError::Name)?;
-        let Kind::Word(words) = self.fields[index].kind else {
-            return Err(FieldError::Word(&[]));
+        let field = &self.fields[index];
+        let Kind::Word(words) = field.kind else {
+            let mut named = field.names.iter().zip(field.named);
+            let found = named.find(|(one, _)| **one == word);
+            let (_, numbers) = found.ok_or(FieldError::Word(field.names))?;
+            return self.set_at(index, numbers);
         };
         let mut places = words.iter().zip(0_u8..);
         let place = places.find(|(one, _)| **one == word);

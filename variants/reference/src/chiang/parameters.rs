@@ -29,6 +29,10 @@ impl Selection {
 
 /// Formulas of the parameters of the model of Chiang et al., in either precision.
 pub trait ChiangFormulas<T: Real>: Sized {
+    /// Sets the tilt from a cuticle angle of `MaterialX`: see [`ChiangDesc::with_cuticle_angle`].
+    #[must_use]
+    fn with_cuticle_angle(self, angle: T) -> Self;
+
     /// Sets the absorption of melanin: see [`ChiangDesc::with_melanin`].
     #[must_use]
     fn with_melanin(self, eumelanin: T, pheomelanin: T) -> Self;
@@ -41,18 +45,19 @@ pub trait ChiangFormulas<T: Real>: Sized {
     #[must_use]
     fn with_color(self, color: [T; 3]) -> Self;
 
-    /// Computes the longitudinal variances of R, TT, TRT and the rest: `v0`, `v0 / 4`, `4 v0`, `4 v0`, with
-    /// `v0 = (.726 beta_m + .812 beta_m^2 + 3.7 beta_m^20)^2`.
+    /// Computes the longitudinal variances of R, TT, TRT and the rest: `(width v)^2`, with `width` the lobe's `width_m` and
+    /// `v = .726 beta_m + .812 beta_m^2 + 3.7 beta_m^20`. The rest has that of TRT.
     ///
-    /// - Source: Chiang et al. 2016, section 4.
+    /// - Source: Chiang et al. 2016, section 4, with widths of 1, 1/2 and 2.
     #[must_use]
     fn variances(&self) -> PerLobe<T>;
 
-    /// Computes the scale of the azimuthal logistic, rad: `sqrt(pi / 8) (.265 beta_n + 1.194 beta_n^2 + 5.372 beta_n^22)`.
+    /// Computes the scales of the azimuthal logistics, rad: `width sqrt(pi / 8) (.265 beta_n + 1.194 beta_n^2 + 5.372 beta_n^22)`, with
+    /// `width` the lobe's `width_n`. The rest, which has no logistic, has that of TRT.
     ///
-    /// - Source: Chiang et al. 2016, section 4.
+    /// - Source: Chiang et al. 2016, section 4, with widths of 1.
     #[must_use]
-    fn scale(&self) -> T;
+    fn scales(&self) -> PerLobe<T>;
 
     /// Computes the shifts of `theta_i + theta_o`, rad: -2, +1, +4 and 0 tilts (d'Eon et al. 2011), or `2 p eta - 2` tilts.
     #[must_use]
@@ -61,14 +66,18 @@ pub trait ChiangFormulas<T: Real>: Sized {
 
 impl<T: Real> ChiangFormulas<T> for ChiangDesc<T> {
     #[inline]
-    fn with_melanin(self, eumelanin: T, pheomelanin: T) -> Self {
-        let channel = |e: f64, p: f64| T::from_f64(e) * eumelanin + T::from_f64(p) * pheomelanin;
+    fn with_cuticle_angle(self, angle: T) -> Self {
         Self {
-            sigma_a: [
-                channel(0.419, 0.187),
-                channel(0.697, 0.4),
-                channel(1.37, 1.05),
-            ],
+            tilt: angle * T::PI - T::PI / T::from_f64(2.0),
+            ..self
+        }
+    }
+
+    #[inline]
+    fn with_melanin(self, eumelanin: T, pheomelanin: T) -> Self {
+        let (e, p) = (self.eumelanin, self.pheomelanin);
+        Self {
+            sigma_a: [0, 1, 2].map(|c| e[c] * eumelanin + p[c] * pheomelanin),
             ..self
         }
     }
@@ -101,15 +110,17 @@ impl<T: Real> ChiangFormulas<T> for ChiangDesc<T> {
     fn variances(&self) -> PerLobe<T> {
         let (number, m) = (T::from_f64, self.beta_m);
         let root = number(0.726) * m + number(0.812) * m * m + number(3.7) * m.powf(number(20.0));
-        let v = root * root;
-        PerLobe([v, v / number(4.0), number(4.0) * v, number(4.0) * v])
+        let [r, tt, trt] = self.width_m.map(|width| width * root * (width * root));
+        PerLobe([r, tt, trt, trt])
     }
 
     #[inline]
-    fn scale(&self) -> T {
+    fn scales(&self) -> PerLobe<T> {
         let (number, n) = (T::from_f64, self.beta_n);
         let sum = number(0.265) * n + number(1.194) * n * n + number(5.372) * n.powf(number(22.0));
-        (T::PI / number(8.0)).sqrt() * sum
+        let scale = (T::PI / number(8.0)).sqrt() * sum;
+        let [r, tt, trt] = self.width_n.map(|width| width * scale);
+        PerLobe([r, tt, trt, trt])
     }
 
     #[inline]

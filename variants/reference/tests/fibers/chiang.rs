@@ -8,7 +8,7 @@ use hairis_reference::{
     ChiangFormulas, ChiangReference, Real, Reference, Selection, bessel_i0_scaled,
 };
 use hairis_variants::ChiangDesc;
-use hairis_variants::chiang::{ChiangParams, Shifts};
+use hairis_variants::chiang::ChiangParams;
 
 pub(crate) type ChiangFiber = ChiangReference<f64>;
 pub(crate) const GRAZING: f64 = 1.000_01e-5;
@@ -25,7 +25,7 @@ pub(crate) fn clear(beta_m: f64, beta_n: f64, tilt_deg: f64) -> ChiangDesc<f64> 
         tilt: tilt_deg * DEG,
         eta: 1.55,
         sigma_a: [0.0; 3],
-        shifts: Shifts::DEon,
+        ..ChiangDesc::default().map(f64::from)
     }
 }
 
@@ -52,7 +52,7 @@ pub(crate) fn azimuths(p: &ChiangDesc<f64>, fiber: &ChiangFiber) -> Vec<(f64, f6
     let peaks: Vec<_> = centres
         .into_iter()
         .flat_map(|c| [c - turn, c, c + turn])
-        .map(|c| (c, p.scale()))
+        .map(|c| (c, p.scales().0[1]))
         .collect();
     rule(
         0.0,
@@ -351,7 +351,7 @@ fn single_precision_follows_and_is_total() {
                 tilt: f32::from_f64(p.tilt),
                 eta: f32::from_f64(p.eta),
                 sigma_a: p.sigma_a.map(f32::from_f64),
-                shifts: p.shifts,
+                ..ChiangDesc::default()
             };
             let wo = direction(theta_o, 0.7).map(f32::from_f64);
             let fiber =
@@ -362,7 +362,7 @@ fn single_precision_follows_and_is_total() {
                 wo.map(f64::from),
                 f64::from(f32::from_f64(h)),
             );
-            let narrow = p.scale().min(p.variances()[Lobe::TT].sqrt());
+            let narrow = p.scales()[Lobe::TT].min(p.variances()[Lobe::TT].sqrt());
             if theta_o.abs() < 1.5 && h.abs() < 0.99 {
                 for [a, b, c] in points(20) {
                     let drawn = fiber.sample([a, b, c].map(f32::from_f64));

@@ -269,7 +269,7 @@ fn samples_pass_chi_square_on_the_sphere() {
             &Lobe::ALL.map(|lobe| (fiber.cone(lobe), 0.05)),
             &[],
         );
-        let value = chi_square(&fiber, &theta, &centres.map(|c| (c, p.scale())));
+        let value = chi_square(&fiber, &theta, &centres.map(|c| (c, p.scales()[Lobe::TT])));
         println!(
             "beta_m {beta_m} beta_n {beta_n} theta_o {theta_o} {selection:?}: p-value {value:.3}"
         );
@@ -324,7 +324,7 @@ fn few_offsets_make_the_far_field_of_rough_fibres() {
         }
         // 1.7 over the scale of the logistic.
         let count = (1..)
-            .find(|n| *n as f64 >= 1.7 / clear(0.3, beta_n, 0.0).scale())
+            .find(|n| *n as f64 >= 1.7 / clear(0.3, beta_n, 0.0).scales()[Lobe::TT])
             .unwrap();
         for theta_o in [0.0, 30.0, 60.0, 80.0] {
             let found = gap(beta_n, theta_o, count);
