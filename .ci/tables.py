@@ -240,6 +240,16 @@ def refits():
     return record, ["", "looks", "start", "best factor on the widths", "fitted", "worst", "error, at most"], body
 
 
+def exhaustive():
+    """Largest errors of the elementary functions over all floats of their domains."""
+    record = Record("exhaustive.csv")
+    number = lambda text: f"{float(text):.6g}"
+    rows = [[f"`{row['function']}`", row["result"], f"{number(row['first'])} to {number(row['last'])}", row["unit"],
+             three(float(row["one lane"])), number(row["one lane at"]), three(float(row["fused"])), number(row["fused at"])]
+            for row in record.rows]
+    return record, ["function", "result", "domain", "unit", "one lane", "at", "fused", "at"], rows
+
+
 def pictures():
     """Numbers of the presets that fits found in pictures: distance from the truth, mean over the seeds with its standard error."""
     record = Record("pictures.csv")
@@ -252,7 +262,7 @@ def pictures():
     return record, ["", *words.values()], rows
 
 
-TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "pictures": pictures, "refits": refits, "speed": speed}
+TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "pictures": pictures, "refits": refits, "speed": speed}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 

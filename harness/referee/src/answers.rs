@@ -34,6 +34,8 @@ pub struct Answer {
     pub got: Numbers,
     /// Numbers of the formulas.
     pub want: Numbers,
+    /// Density of sampling the direction from each lobe alone, per steradian, by the formulas; 0 in slots without a lobe.
+    pub lobe_pdfs: [f64; 4],
 }
 
 /// Numbers at one direction.
@@ -149,6 +151,7 @@ fn parse(line: usize, text: &str) -> Result<(ModelId, Answer), String> {
         drawn_with,
         got,
         want,
+        lobe_pdfs: lobes.map(|lobe| lobe.pdf),
     };
     Ok((spec.model, answer))
 }

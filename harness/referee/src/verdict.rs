@@ -13,6 +13,9 @@ const NEARLY_ALL: [usize; 2] = [99, 100];
 const SURE: f64 = 5.0;
 const LEAST: f64 = 0.01;
 
+/// Share of a lobe's density that the other lobes do not have, below which the lobe has no probability of its own.
+const SINGULAR: f64 = 1e-12;
+
 /// Verdict on one quantity, which is displayed as a line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
@@ -31,6 +34,12 @@ pub enum Verdict {
         most: f64,
         /// Largest error.
         largest: f64,
+    },
+    /// Density of the lobes of the formulas, with other probabilities: that of another sampler. The relative error that 99% of the numbers
+    /// stay below.
+    Mixture {
+        /// Error of 99% of the numbers.
+        most: f64,
     },
     /// Equal to the formulas but for a factor.
     Factor {
@@ -53,11 +62,17 @@ pub enum Verdict {
     TooBright(Estimate),
 }
 
+impl Verdict {
+    const fn is_right(&self) -> bool {
+        matches!(self, Self::Right { .. } | Self::Mixture { .. })
+    }
+}
+
 impl Line {
     /// Returns true if nothing is wrong.
     #[must_use]
     pub const fn is_right(&self) -> bool {
-        matches!(self.verdict, Verdict::Right { .. })
+        self.verdict.is_right()
     }
 }
 
@@ -68,6 +83,10 @@ impl fmt::Display for Line {
             Verdict::Right { most, largest } => {
                 write!(f, "right within {most:.1e} (largest error {largest:.1e})")
             }
+            Verdict::Mixture { most } => write!(
+                f,
+                "right within {most:.1e} for lobes that are chosen with other probabilities"
+            ),
             Verdict::Factor { factor, most } => {
                 write!(
                     f,
@@ -120,11 +139,14 @@ pub fn judge(answers: &Answers, tolerance: f64) -> Vec<Line> {
         }),
         tolerance,
     );
-    let is_wrong = |verdict: &Option<Verdict>| {
-        verdict
-            .as_ref()
-            .is_some_and(|v| !matches!(v, Verdict::Right { .. }))
-    };
+    let pdf = pdf.map(|verdict| {
+        let mixture = (!verdict.is_right()).then(|| mixture(answers));
+        match mixture.flatten().filter(|most| *most <= tolerance) {
+            Some(most) => Verdict::Mixture { most },
+            None => verdict,
+        }
+    });
+    let is_wrong = |verdict: &Option<Verdict>| verdict.as_ref().is_some_and(|v| !v.is_right());
     let (bright, sums) = (is_wrong(&value), is_wrong(&pdf));
     add("value", value);
     if bright {
@@ -276,6 +298,79 @@ fn compared(pairs: &[Pair<'_>], tolerance: f64) -> Option<Verdict> {
     Some(Verdict::Shape {
         ratios: [ratios[0], middle, ratios[ratios.len() - 1]],
         line: worst.answer.line,
+    })
+}
+
+/// Returns the relative error of densities that 99% of the numbers stay below, if the lobes of each shading point have the probabilities that
+/// fit best. The probabilities must sum to 1. `None` without enough densities.
+fn mixture(answers: &Answers) -> Option<f64> {
+    let mut ratios = Vec::new();
+    for scene in answers.answers.chunk_by(|a, b| a.scene == b.scene) {
+        // Least squares of relative errors: the equations are those of the lobes' densities over that of the program.
+        let mut equations = [[0.0; 5]; 4];
+        let parts = |answer: &Answer| {
+            let pdf = answer.got.pdf?;
+            Some(
+                answer
+                    .lobe_pdfs
+                    .map(|lobe| lobe / pdf.max(f64::MIN_POSITIVE)),
+            )
+        };
+        for answer in scene {
+            let parts = parts(answer)?;
+            for (row, part) in equations.iter_mut().zip(parts) {
+                for (sum, other) in row.iter_mut().zip(parts.into_iter().chain([1.0])) {
+                    *sum += part * other;
+                }
+            }
+        }
+        let probabilities = solved(equations);
+        let is_mixture = probabilities.iter().all(|p| *p > -LEAST)
+            && (probabilities.iter().sum::<f64>() - 1.0).abs() < LEAST;
+        if !is_mixture || scene.len() < 8 {
+            return None;
+        }
+        let mixed = |parts: [f64; 4]| {
+            parts
+                .iter()
+                .zip(probabilities)
+                .map(|(a, p)| a * p)
+                .sum::<f64>()
+        };
+        ratios.extend(scene.iter().filter_map(parts).map(mixed));
+    }
+    Some(errors(ratios.into_iter().map(|ratio| 1.0 / ratio))[0])
+}
+
+/// Solves four equations whose matrix is symmetric and not negative, by elimination. A lobe without density of its own gets 0.
+fn solved(mut rows: [[f64; 5]; 4]) -> [f64; 4] {
+    // Densities of lobes that are hardly ever chosen are many orders of magnitude larger than their mixture: scale all of them to 1.
+    let scale: [f64; 4] = core::array::from_fn(|k| rows[k][k].max(f64::MIN_POSITIVE).sqrt());
+    for (row, own) in rows.iter_mut().zip(scale) {
+        for (x, other) in row.iter_mut().zip(scale.into_iter().chain([1.0])) {
+            *x /= own * other;
+        }
+    }
+    for k in 0..4 {
+        let pivot = rows[k];
+        for (n, row) in rows.iter_mut().enumerate() {
+            let factor = if n == k || pivot[k] < SINGULAR {
+                0.0
+            } else {
+                row[k] / pivot[k]
+            };
+            for (x, y) in row.iter_mut().zip(pivot) {
+                *x -= factor * y;
+            }
+        }
+    }
+    core::array::from_fn(|k| {
+        let [x, pivot] = [rows[k][4], rows[k][k]];
+        if pivot < SINGULAR {
+            0.0
+        } else {
+            x / pivot / scale[k]
+        }
     })
 }
 

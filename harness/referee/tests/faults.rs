@@ -189,13 +189,44 @@ fn densities_of_another_sampler_are_found() {
         &clear,
         &["pdf .. in shape", "pdf's integral .. integrates to 1."],
     );
-    // The same with the cosine integrates to 1, and is still another density.
+    // With the cosine it is the density of the same lobes, chosen by the light that they would return without absorption.
     let clear = answered(&cases, |case, line| {
         let (_, point) = formulas(case, &["sigma_a=0,0,0"]);
         let wi = three(&case["wi"]);
         line["pdf"] = json!(point.eval(wi)[0] * cos(wi));
     });
-    assert_wrong("with the cosine", &clear, &["pdf .. in shape"]);
+    assert_wrong("with the cosine", &clear, &[]);
+    assert!(verdicts(&clear)[5].contains("other probabilities"));
+}
+
+#[test]
+fn other_probabilities_of_lobes_are_no_fault() {
+    // Lobes that are chosen by their luminance, and evenly.
+    let cases = cases("chiang");
+    let density = |case: &Value, weigh: &dyn Fn([f64; 3]) -> f64| {
+        let (_, point) = formulas(case, &[]);
+        let lobes = point.lobes(three(&case["wi"])).0;
+        let weights = lobes.map(|lobe| weigh(lobe.color));
+        let parts = lobes.iter().zip(weights).map(|(lobe, w)| lobe.pdf * w);
+        parts.sum::<f64>() / weights.iter().sum::<f64>()
+    };
+    let luminance = |[r, g, b]: [f64; 3]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    for weigh in [&luminance as &dyn Fn([f64; 3]) -> f64, &|_| 1.0] {
+        let answers = answered(&cases, |case, line| {
+            line["pdf"] = json!(density(case, weigh))
+        });
+        assert_wrong("probabilities", &answers, &[]);
+        let lines = verdicts(&answers);
+        assert!(lines[5].contains("other probabilities"), "{lines:#?}");
+    }
+    let answers = answered(&cases, |case, line| {
+        line["pdf"] = json!(0.9 * density(case, &luminance));
+    });
+    assert_wrong(
+        "sum",
+        &answers,
+        &["pdf .. in shape", "pdf's integral .. integrates to 0.9"],
+    );
 }
 
 /// Ten terms of the series of I0, over I0.

@@ -152,7 +152,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!("one float in {stride}, from the {offset}th on");
             check(path, Choice { stride, offset })?
         }
-        [path] if path != "check" => record(path)?,
+        [path] if path != "check" && !path.starts_with('-') => record(path)?,
         _ => {
             return Err(
                 "usage: hairis-exhaustive RECORD | hairis-exhaustive check RECORD [STRIDE]".into(),
