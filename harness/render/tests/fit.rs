@@ -14,7 +14,7 @@ use hairis_render::lights::Sky;
 use hairis_render::scene::Scene;
 use hairis_render::scenes::Name;
 use hairis_render::transport::{self, Integrator, Mis, Settings, record};
-use hairis_variants::{ModelId, Values};
+use hairis_variants::{Kind, ModelId, Values};
 use std::fs;
 
 /// Settings of the paths that fits follow.
@@ -112,7 +112,16 @@ fn looks() -> Vec<Choice> {
     let mut looks = Vec::new();
     for id in ModelId::defaults_of_names() {
         let presets: Vec<_> = id.presets().take(3).collect();
-        let preset = choice(id.name(), presets.last().expect("a preset").0);
+        let mut preset = choice(id.name(), presets.last().expect("a preset").0);
+        // Tints of 1 are the end of their range, where a difference has one side.
+        for field in id.fields().iter().filter(|field| field.optional) {
+            let inside: Vec<f32> = (preset.values.numbers(field.name).iter())
+                .map(|x| 0.9 * x)
+                .collect();
+            if !matches!(field.kind, Kind::Word(_)) {
+                preset.values = preset.values.with(field.name, &inside);
+            }
+        }
         let in_place = id
             .fields()
             .iter()

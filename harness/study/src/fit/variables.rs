@@ -23,7 +23,7 @@ struct Variable {
     range: [f64; 2],
 }
 
-/// Free numbers of values: those of fields that are given, not fixed, and not words.
+/// Free numbers of values: those of fields that are given, not fixed, not optional, and not words.
 #[derive(Clone, Debug)]
 pub struct Variables {
     base: Values,
@@ -36,8 +36,8 @@ impl Variables {
     pub fn new(base: &Values, fixed: &[String]) -> Self {
         let mut all = Vec::new();
         for (index, field) in base.fields().iter().enumerate() {
-            let is_word = matches!(field.kind, Kind::Word(_));
-            if is_word || !base.has_at(index) || fixed.iter().any(|name| name == field.name) {
+            let stays = matches!(field.kind, Kind::Word(_)) || field.optional;
+            if stays || !base.has_at(index) || fixed.iter().any(|name| name == field.name) {
                 continue;
             }
             for (place, number) in base.numbers_at(index).iter().enumerate() {
