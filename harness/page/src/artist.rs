@@ -1,5 +1,6 @@
 //! Artist's controls as numbers in a row, and their conversion to and from the parameters.
 
+use crate::memory::NUMBERS;
 use crate::slot;
 use hairis::params::{ArtistControls, Glints, Highlight, Transmission};
 use hairis::{HairParams, ParamError};
@@ -59,7 +60,7 @@ pub(crate) const CONTROLS: &[Control] = &[
 ];
 
 /// Replaces the numbers of the controls by the numbers of the corresponding parameters.
-pub(crate) fn params(numbers: &mut [f32; 32]) -> Result<(), ParamError> {
+pub(crate) fn params(numbers: &mut [f32; NUMBERS]) -> Result<(), ParamError> {
     let [
         r0,
         r1,

@@ -3,15 +3,19 @@
 use crate::slot::Slot;
 use core::cell::UnsafeCell;
 use core::fmt;
+use hairis_variants::Values;
 
 /// Number of `f32` values from the start of a column to the start of the next: a map of 512 by 256, and some more. The excess keeps
 /// columns from meeting at the same addresses modulo 4 KiB.
 pub(crate) const COLUMN: usize = 512 * 256 + 48;
 
+/// Number of numbers that a material has at most.
+pub(crate) const NUMBERS: usize = Values::MOST;
+
 /// Exclusive references to everything that the module keeps between calls.
 pub(crate) struct Memory {
     pub(crate) text: &'static mut Text,
-    pub(crate) numbers: &'static mut [f32; 32],
+    pub(crate) numbers: &'static mut [f32; NUMBERS],
     pub(crate) slots: &'static mut [Slot; 2],
     pub(crate) maps: &'static mut [[[f32; COLUMN]; 7]; 2],
     pub(crate) work: &'static mut [[f32; COLUMN]; 14],
@@ -47,7 +51,7 @@ impl fmt::Write for Text {
 /// Memory that starts as zeros and therefore takes no space in the file.
 struct Zeros {
     text: Text,
-    numbers: [f32; 32],
+    numbers: [f32; NUMBERS],
     maps: [[[f32; COLUMN]; 7]; 2],
     work: [[f32; COLUMN]; 14],
 }
@@ -63,7 +67,7 @@ static ZEROS: Single<Zeros> = Single(UnsafeCell::new(Zeros {
         bytes: [0; 1 << 16],
         len: 0,
     },
-    numbers: [0.0; 32],
+    numbers: [0.0; NUMBERS],
     maps: [[[0.0; COLUMN]; 7]; 2],
     work: [[0.0; COLUMN]; 14],
 }));

@@ -68,8 +68,10 @@ function materialRows(material) {
   return model.fields.flatMap(field => {
     const group = model.fields.filter(other => (other.instead_of ?? other.name) === (field.instead_of ?? field.name));
     if (group.length === 1) {
-      if (material.values[field.name] === undefined)
-        material.values[field.name] = structuredClone(Object.values(model.presets)[0][field.name]);
+      const usual = Object.values(model.presets)[0][field.name];
+      if (material.values[field.name] === undefined) material.values[field.name] = structuredClone(usual);
+      // Tints, factors on widths and pigments have controls in materials that use them: from a link or a file.
+      if (field.optional && field.kind !== 'word' && `${material.values[field.name]}` === `${usual}`) return [];
       return fieldRows(field, material);
     }
     if (field !== group[0]) return [];

@@ -17,7 +17,7 @@ class Kernel {
     const floats = (at, count) => new Float32Array(exports.memory.buffer, at, count);
     const columns = (at, count) =>
       Array.from({ length: count }, (_, i) => floats(at + 4 * i * this.column, this.column));
-    this.numbers = floats(exports.numbers(), 32);
+    this.numbers = floats(exports.numbers(), 48);
     this.maps = [0, 1].map(slot => columns(exports.map(slot), 7));
     this.work = columns(exports.work(), 14);
     this.entries = [];
