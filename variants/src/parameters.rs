@@ -138,6 +138,14 @@ impl Field {
         }
     }
 
+    /// Returns true if the field may be left out and random materials leave it as it is: a tint, a factor or a word that everyday hair does
+    /// not need. Fits and controls leave it alone as well.
+    #[inline]
+    #[must_use]
+    pub const fn is_extra(&self) -> bool {
+        self.optional && self.draw.is_none()
+    }
+
     /// Declares that this field may take the place of `field`, so that exactly one of them is given.
     #[inline]
     #[must_use]

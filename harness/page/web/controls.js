@@ -71,7 +71,7 @@ function materialRows(material) {
       const usual = Object.values(model.presets)[0][field.name];
       if (material.values[field.name] === undefined) material.values[field.name] = structuredClone(usual);
       // Tints, factors on widths and pigments have controls in materials that use them: from a link or a file.
-      if (field.optional && field.kind !== 'word' && `${material.values[field.name]}` === `${usual}`) return [];
+      if (field.optional && !field.draw && field.kind !== 'word' && `${material.values[field.name]}` === `${usual}`) return [];
       return fieldRows(field, material);
     }
     if (field !== group[0]) return [];

@@ -114,7 +114,7 @@ fn looks() -> Vec<Choice> {
         let presets: Vec<_> = id.presets().take(3).collect();
         let mut preset = choice(id.name(), presets.last().expect("a preset").0);
         // Tints of 1 are the end of their range, where a difference has one side.
-        for field in id.fields().iter().filter(|field| field.optional) {
+        for field in id.fields().iter().filter(|field| field.is_extra()) {
             let inside: Vec<f32> = (preset.values.numbers(field.name).iter())
                 .map(|x| 0.9 * x)
                 .collect();

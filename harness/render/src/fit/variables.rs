@@ -11,7 +11,7 @@ const STEP: f64 = 0.05;
 const MOST_LOG: f64 = 10.0;
 /// Number that takes the place of 0 if a factor on it is to be found.
 const LEAST: f64 = 1e-3;
-/// Fields that stay as they are unless freed, besides optional ones: neither colours, widths nor shifts of lobes.
+/// Fields that stay as they are unless freed, besides extras: neither colours, widths nor shifts of lobes.
 const HELD: &[&str] = &["i_r", "phi_g", "i_g", "eta"];
 /// Fields whose numbers share factors, either by group, or by channel with this power.
 const TIED: &[(&str, Tie)] = &[
@@ -46,8 +46,8 @@ struct Variable {
 /// Variables of a fit, which scale or shift the numbers of a model's fields. Words stay as they are.
 ///
 /// The published model has one factor on all shifts, one on all widths, and one per channel on the transmittance of a passage through
-/// the fibre, which TT makes once and TRT twice. In other models, every number except the index of refraction and those of optional fields
-/// is a variable of its own.
+/// the fibre, which TT makes once and TRT twice. In other models, every number except the index of refraction and extras is a
+/// variable of its own.
 #[derive(Clone, Debug)]
 pub struct Variables {
     base: Values,
@@ -63,7 +63,7 @@ impl Variables {
         for (index, field) in start.fields().iter().enumerate() {
             let is_in = |names: &[String]| names.iter().any(|name| name == field.name);
             let is_free = is_in(free);
-            let stays = HELD.contains(&field.name) || field.optional;
+            let stays = HELD.contains(&field.name) || field.is_extra();
             let is_held = is_in(fixed) || (stays && !is_free);
             let Some(range) = field.range().filter(|_| !is_held && start.has_at(index)) else {
                 continue;

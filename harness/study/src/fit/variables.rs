@@ -23,7 +23,7 @@ struct Variable {
     range: [f64; 2],
 }
 
-/// Free numbers of values: those of fields that are given, not fixed, not optional, and not words.
+/// Free numbers of values: those of fields that are given, not fixed, no extras, and not words.
 #[derive(Clone, Debug)]
 pub struct Variables {
     base: Values,
@@ -36,7 +36,7 @@ impl Variables {
     pub fn new(base: &Values, fixed: &[String]) -> Self {
         let mut all = Vec::new();
         for (index, field) in base.fields().iter().enumerate() {
-            let stays = matches!(field.kind, Kind::Word(_)) || field.optional;
+            let stays = matches!(field.kind, Kind::Word(_)) || field.is_extra();
             if stays || !base.has_at(index) || fixed.iter().any(|name| name == field.name) {
                 continue;
             }
