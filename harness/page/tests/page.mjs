@@ -313,6 +313,8 @@ async function states() {
   await page.waitForFunction(() =>
     document.getElementById('sentence').textContent.includes('Gaussian reflects no light'),
   );
+  // A picture that is drawn while the button is down moves the summary away.
+  await settled(page);
   await page.locator('#numbers summary').click();
   await page
     .locator('#json-0')
