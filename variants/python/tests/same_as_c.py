@@ -16,7 +16,7 @@ Rows = C.c_void_p * 3
 
 
 class Params(C.Structure):
-    _fields_ = [("model", C.c_uint32), ("given", C.c_uint32), ("numbers", C.c_float * 32)]
+    _fields_ = [("model", C.c_uint32), ("given", C.c_uint32), ("numbers", C.c_float * 48)]
 
 
 class Evals(C.Structure):
