@@ -173,14 +173,15 @@ part wheel
 "$python" variants/python/tests/same_as_c.py "$prefix/lib/libhairis.so"
 
 part 'NumPy and Dr.Jit'
-HAIRIS_HITS=100 "$python" .ci/frameworks.py "$(.ci/release.sh)/hairis" numpy drjit > "$work/frameworks.log" ||
+programs=$(.ci/release.sh)
+HAIRIS_HITS=100 "$python" .ci/frameworks.py "$programs/hairis" numpy drjit > "$work/frameworks.log" ||
   { grep FAIL "$work/frameworks.log"; exit 1; }
 
 part Mitsuba
 (cd "$capi/examples/mitsuba" && "$python" chi2.py 1000000)
 # The referee judges the hair of Mitsuba itself: its values have a cosine, and are right.
-"$(.ci/release.sh)/hairis-referee" vectors --model chiang | "$python" harness/referee/examples/mitsuba_hair.py > "$work/mitsuba.json"
-{ "$(.ci/release.sh)/hairis-referee" check --tolerance 0.01 "$work/mitsuba.json" || true; } | tee "$work/verdict"
+"$programs/hairis-referee" vectors --model chiang | "$python" harness/referee/examples/mitsuba_hair.py > "$work/mitsuba.json"
+{ "$programs/hairis-referee" check --tolerance 0.01 "$work/mitsuba.json" || true; } | tee "$work/verdict"
 grep -q '^value .* factor cos theta_i, else right' "$work/verdict"
 "$capi/examples/mitsuba/build.sh" "$python" "$prefix" "$work/plugins"
 (cd "$work" && "$python" "$capi/examples/mitsuba/pixels.py" "$work/plugins")

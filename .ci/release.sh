@@ -1,7 +1,7 @@
 #!/bin/bash
 # Builds the programs that other checks look at, once for all of them, and prints their folder: release.sh [LEVEL [FEATURES]].
-# At opt-level 3, the default, `hairis` with the programs that it starts, `entry` and `hairis-exhaustive`; at "s" and "z" `entry` alone, with these features of hairis-benches. The same
-# packages each time: features that differ would compile the kernels again.
+# At opt-level 3, the default, `hairis` with the programs that it starts, `entry` and `hairis-exhaustive`; at "s" and "z" `entry`
+# alone, with these features of hairis-benches. The same packages each time: features that differ would compile the kernels again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . .ci/flags

@@ -6,6 +6,12 @@ use serde_json::de::StrRead;
 use serde_path_to_error::{Segment, Track};
 use std::collections::BTreeMap;
 
+/// Tolerance of the length of a direction, which is then normalised.
+const LENGTH_TOLERANCE: f64 = 1e-3;
+/// Tolerance of the length of a unit vector in single precision. Such a vector is not normalised, so that all paths answer
+/// for the same direction.
+const ROUNDED: f64 = 2e-7;
+
 /// Deserializer of the text that is being read.
 type Input<'a> = serde_json::Deserializer<StrRead<'a>>;
 
@@ -254,4 +260,40 @@ pub fn numbers(path: &str, json: &Json, len: usize) -> Result<Vec<f64>, String> 
             format!("must be an array of {len} numbers, got {other}"),
         )),
     }
+}
+
+/// Returns the offset across the fibre in the field `h`.
+///
+/// # Errors
+///
+/// Returns an error if it is not a number in `[-1, 1]`.
+pub fn offset(json: &Json) -> Result<f64, String> {
+    let h = number("h", json)?;
+    if (-1.0..=1.0).contains(&h) {
+        Ok(h)
+    } else {
+        Err(refusal("h", format!("must be in [-1, 1], got {h}")))
+    }
+}
+
+/// Returns the direction at `path`, normalised unless its length is that of a unit vector in single precision.
+///
+/// # Errors
+///
+/// Returns an error if it is not three numbers, or if its length is not 1 to within 1e-3.
+pub fn direction(path: &str, json: &Json) -> Result<[f64; 3], String> {
+    let numbers = numbers(path, json, 3)?;
+    let length = numbers[0].hypot(numbers[1]).hypot(numbers[2]);
+    if (length - 1.0).abs() > LENGTH_TOLERANCE {
+        return Err(refusal(
+            path,
+            format!("must be a unit vector (to {LENGTH_TOLERANCE}), got length {length}"),
+        ));
+    }
+    let divisor = if (length - 1.0).abs() <= ROUNDED {
+        1.0
+    } else {
+        length
+    };
+    Ok([0, 1, 2].map(|row| numbers[row] / divisor))
 }

@@ -29,6 +29,24 @@ pub fn find_model(name: &str) -> Result<ModelId, String> {
     })
 }
 
+/// Returns the model with another sampler, by the sampler's word.
+///
+/// # Errors
+///
+/// Returns the rest of a sentence that begins with a flag or a field: which words there are, and the one that is none of them.
+pub fn find_sampler(model: ModelId, word: &str) -> Result<ModelId, String> {
+    let name = model.name();
+    ModelId::find(name, Some(word)).ok_or_else(|| {
+        let of_name = ModelId::ALL.iter().filter(|id| id.name() == name);
+        let words: Vec<_> = of_name.filter_map(|id| Some(id.choice()?.1)).collect();
+        if words.is_empty() {
+            format!("must be left out, as {name} has one sampler, got {word:?}")
+        } else {
+            format!("must be one of {}, got {word:?}", words.join(", "))
+        }
+    })
+}
+
 /// Material specification: a model of the registry with parameters that have been checked.
 ///
 /// ```

@@ -1,12 +1,12 @@
 //! Answers of another program: cases with numbers of its own.
 
 use hairis_materials::MaterialSpec;
-use hairis_materials::json::{Json, number, numbers, refusal};
-use hairis_reference::exact_reference;
+use hairis_materials::json::{Json, direction, number, numbers, offset, refusal};
+use hairis_reference::{Reference, exact_reference};
 use hairis_variants::ModelId;
 use std::collections::BTreeMap;
 
-/// Fields of a case besides those of a request of `hairis eval`. The first four need no value here.
+/// Fields of a case besides those of a request of `hairis eval`. The first two are for readers alone.
 const MORE: [&str; 7] = [
     "case",
     "expected",
@@ -49,6 +49,23 @@ pub struct Numbers {
     pub lobes: Vec<Option<[f64; 3]>>,
 }
 
+impl Numbers {
+    /// Returns the numbers of the formulas at a direction.
+    #[must_use]
+    pub fn of(model: ModelId, point: &dyn Reference<f64>, wi: [f64; 3]) -> Self {
+        let (value, pdf) = point.eval_pdf(wi);
+        let lobes = point
+            .lobes(wi)
+            .0
+            .map(|lobe| lobe.color.map(|c| c * lobe.value));
+        Self {
+            value: Some(value),
+            pdf: Some(pdf),
+            lobes: lobes.map(Some)[..model.lobes().len()].to_vec(),
+        }
+    }
+}
+
 /// Answers to cases of one model.
 #[derive(Clone, Debug)]
 pub struct Answers {
@@ -59,6 +76,11 @@ pub struct Answers {
 }
 
 impl Answers {
+    /// Returns the answers of each shading point in turn.
+    pub fn scenes(&self) -> impl Iterator<Item = &[Answer]> {
+        self.answers.chunk_by(|a, b| a.scene == b.scene)
+    }
+
     /// Parses lines of JSON.
     ///
     /// # Errors
@@ -98,12 +120,9 @@ fn parse(line: usize, text: &str) -> Result<(ModelId, Answer), String> {
     let given = |name: &str| fields.get(name).ok_or_else(|| refusal(name, "missing"));
     let optional = |name: &str| fields.get(name).map(|json| number(name, json)).transpose();
     let spec = MaterialSpec::read(first, &fields)?;
-    let [wo, wi] = ["wo", "wi"].map(|name| three(name, given(name)?));
-    let (wo, wi) = (unit("wo", wo?)?, unit("wi", wi?)?);
-    let h = optional("h")?.unwrap_or(0.0);
-    if !(-1.0..=1.0).contains(&h) {
-        return Err(refusal("h", format!("must be in [-1, 1], got {h}")));
-    }
+    let [wo, wi] = ["wo", "wi"].map(|name| direction(name, given(name)?));
+    let (wo, wi) = (wo?, wi?);
+    let h = fields.get("h").map_or(Ok(0.0), offset)?;
     let drawn_with = optional("drawn_with")?;
     if let Some(density) = drawn_with.filter(|density| *density <= 0.0) {
         return Err(refusal(
@@ -134,15 +153,6 @@ fn parse(line: usize, text: &str) -> Result<(ModelId, Answer), String> {
     }
     let point = exact_reference(spec.model, &spec.values, &spec.exact, wo, h)
         .map_err(|error| error.to_string())?;
-    let (value, pdf) = point.eval_pdf(wi);
-    let lobes = point.lobes(wi).0;
-    let want = Numbers {
-        value: Some(value),
-        pdf: Some(pdf),
-        lobes: (lobes.iter().take(names.len()))
-            .map(|lobe| Some(lobe.color.map(|c| c * lobe.value)))
-            .collect(),
-    };
     let answer = Answer {
         line,
         scene: optional("scene")?.unwrap_or(0.0),
@@ -150,8 +160,8 @@ fn parse(line: usize, text: &str) -> Result<(ModelId, Answer), String> {
         wi,
         drawn_with,
         got,
-        want,
-        lobe_pdfs: lobes.map(|lobe| lobe.pdf),
+        want: Numbers::of(spec.model, &*point, wi),
+        lobe_pdfs: point.lobe_pdfs(wi).0,
     };
     Ok((spec.model, answer))
 }
@@ -159,15 +169,4 @@ fn parse(line: usize, text: &str) -> Result<(ModelId, Answer), String> {
 fn three(path: &str, json: &Json) -> Result<[f64; 3], String> {
     let numbers = numbers(path, json, 3)?;
     Ok([0, 1, 2].map(|row| numbers[row]))
-}
-
-fn unit(path: &str, v: [f64; 3]) -> Result<[f64; 3], String> {
-    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if (length - 1.0).abs() > 1e-3 {
-        return Err(refusal(
-            path,
-            format!("must be a unit vector (to 0.001), got length {length}"),
-        ));
-    }
-    Ok(v.map(|x| x / length))
 }

@@ -36,8 +36,7 @@ impl Estimate {
 
 /// Estimates the integral of a number for each shading point. Returns none if a case lacks `drawn_with` or the number.
 pub fn by_scene(answers: &Answers, of: impl Fn(&Answer) -> Option<f64>) -> Vec<Estimate> {
-    let scenes = answers.answers.chunk_by(|a, b| a.scene == b.scene);
-    let integrals = scenes.map(|scene| {
+    let integrals = answers.scenes().map(|scene| {
         let parts = scene
             .iter()
             .map(|answer| Some(of(answer)? / answer.drawn_with?));

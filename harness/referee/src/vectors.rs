@@ -1,8 +1,9 @@
 //! Cases: shading points and directions with the value, the density and the lobes of a model in double precision.
 
+use crate::answers::Numbers;
 use crate::args::Vectors;
 use core::f64::consts::{PI, TAU};
-use hairis_materials::material::{find_model, values_json};
+use hairis_materials::material::{find_model, find_sampler, values_json};
 use hairis_program::error::Error;
 use hairis_reference::{Reference, reference};
 use hairis_variants::{ModelId, Values};
@@ -71,18 +72,9 @@ fn direction(sin: f64, turn: f64) -> [f64; 3] {
 /// The contribution of a lobe is linear RGB per steradian, and the lobes sum to S.
 #[must_use]
 pub fn expected(model: ModelId, point: &dyn Reference<f64>, wi: [f64; 3]) -> Value {
-    let (value, pdf) = point.eval_pdf(wi);
-    let lobes = point.lobes(wi).0;
-    let lobes: Map<String, Value> = model
-        .lobes()
-        .iter()
-        .zip(lobes)
-        .map(|(name, lobe)| {
-            (
-                (*name).to_owned(),
-                json!(lobe.color.map(|c| c * lobe.value)),
-            )
-        })
+    let Numbers { value, pdf, lobes } = Numbers::of(model, point, wi);
+    let lobes: Map<String, Value> = (model.lobes().iter().zip(lobes))
+        .map(|(name, rgb)| ((*name).to_owned(), json!(rgb)))
         .collect();
     json!({ "value": value, "pdf": pdf, "lobes": lobes })
 }
@@ -138,17 +130,12 @@ pub fn text(flags: &Vectors) -> Result<String, Error> {
 }
 
 fn model(flags: &Vectors) -> Result<ModelId, Error> {
-    let first =
-        find_model(&flags.model).map_err(|problem| Error::Usage(format!("--model {problem}")))?;
-    let Some(word) = &flags.sampler else {
-        return Ok(first);
-    };
-    ModelId::find(first.name(), Some(word)).ok_or_else(|| {
-        let of_name = ModelId::ALL.iter().filter(|id| id.name() == first.name());
-        let words: Vec<_> = of_name.filter_map(|id| Some(id.choice()?.1)).collect();
-        let words = words.join(", ");
-        Error::Usage(format!("--sampler must be one of [{words}], got {word:?}"))
-    })
+    let refuse = |flag: &'static str| move |problem| Error::Usage(format!("{flag} {problem}"));
+    let first = find_model(&flags.model).map_err(refuse("--model"))?;
+    match &flags.sampler {
+        Some(word) => find_sampler(first, word).map_err(refuse("--sampler")),
+        None => Ok(first),
+    }
 }
 
 /// Calls `see` with the path and the text of each number or word in a value. The names are those of columns: `wo[1]`, `lobes.tt[0]`.

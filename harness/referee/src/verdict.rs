@@ -169,7 +169,7 @@ struct Pair<'a> {
 /// Returns the pairs of a quantity that are bright enough to be judged.
 fn pairs<'a>(answers: &'a Answers, of: impl Fn(&'a Numbers) -> Option<&'a [f64]>) -> Vec<Pair<'a>> {
     let mut all = Vec::new();
-    for scene in answers.answers.chunk_by(|a, b| a.scene == b.scene) {
+    for scene in answers.scenes() {
         let pairs = scene.iter().flat_map(|answer| {
             let [got, want] = [&answer.got, &answer.want].map(&of);
             let both = got.unwrap_or_default().iter().zip(want.unwrap_or_default());
@@ -305,7 +305,7 @@ fn compared(pairs: &[Pair<'_>], tolerance: f64) -> Option<Verdict> {
 /// fit best. The probabilities must sum to 1. `None` without enough densities.
 fn mixture(answers: &Answers) -> Option<f64> {
     let mut ratios = Vec::new();
-    for scene in answers.answers.chunk_by(|a, b| a.scene == b.scene) {
+    for scene in answers.scenes() {
         // Least squares of relative errors: the equations are those of the lobes' densities over that of the program.
         let mut equations = [[0.0; 5]; 4];
         let parts = |answer: &Answer| {

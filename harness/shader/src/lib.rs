@@ -8,7 +8,7 @@ pub mod guide;
 use args::{Shader, ShaderArithmetic, ShaderCall, ShaderTarget};
 use hairis::Material;
 use hairis_materials::MaterialSpec;
-use hairis_materials::material::find_model;
+use hairis_materials::material::{find_model, find_sampler};
 use hairis_program::error::Error;
 use hairis_program::program::print;
 use hairis_shaders::{Call, Function, Language, Program, Target, check_name, numbers};
@@ -81,21 +81,7 @@ fn model(flags: &Shader, materials: &[(String, MaterialSpec)]) -> Result<ModelId
             of_name
         });
     };
-    ModelId::find(name, Some(word)).ok_or_else(|| {
-        let words = ModelId::ALL.iter().filter(|id| id.name() == name);
-        let words: Vec<_> = words
-            .filter_map(|id| id.choice())
-            .map(|(_, word)| word)
-            .collect();
-        Error::Usage(if words.is_empty() {
-            format!("--sampler must be left out, as {name} has one sampler, got {word:?}")
-        } else {
-            format!(
-                "--sampler must be one of {}, got {word:?}",
-                words.join(", ")
-            )
-        })
-    })
+    find_sampler(of_name, word).map_err(|problem| Error::Usage(format!("--sampler {problem}")))
 }
 
 /// Visitor that prints a model and returns the program and its source.

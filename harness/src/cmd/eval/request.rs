@@ -1,14 +1,8 @@
 //! Requests of `hairis eval`: parses and checks one line of the input.
 
 use glam::Vec3;
-use hairis_materials::json::{Json, number, numbers, refusal};
+use hairis_materials::json::{Json, direction, numbers, offset, refusal};
 use hairis_materials::material::{MaterialSpec, single};
-
-/// Tolerance of the length of a direction, which is then normalised.
-const LENGTH_TOLERANCE: f64 = 1e-3;
-/// Tolerance of the length of a unit vector in single precision. Such a vector is not normalised, so that all paths answer
-/// for the same direction.
-const ROUNDED: f64 = 2e-7;
 
 /// Query about a shading point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,34 +71,6 @@ impl Request {
             exact,
         })
     }
-}
-
-/// Parses the offset across the fibre.
-fn offset(json: &Json) -> Result<f64, String> {
-    let h = number("h", json)?;
-    if (-1.0..=1.0).contains(&h) {
-        Ok(h)
-    } else {
-        Err(refusal("h", format!("must be in [-1, 1], got {h}")))
-    }
-}
-
-/// Parses the direction at `path`, and normalises it.
-fn direction(path: &str, json: &Json) -> Result<[f64; 3], String> {
-    let numbers = numbers(path, json, 3)?;
-    let length = numbers[0].hypot(numbers[1]).hypot(numbers[2]);
-    if (length - 1.0).abs() > LENGTH_TOLERANCE {
-        return Err(refusal(
-            path,
-            format!("must be a unit vector (to {LENGTH_TOLERANCE}), got length {length}"),
-        ));
-    }
-    let divisor = if (length - 1.0).abs() <= ROUNDED {
-        1.0
-    } else {
-        length
-    };
-    Ok([0, 1, 2].map(|row| numbers[row] / divisor))
 }
 
 /// Parses the three numbers in `[0, 1)` at `path`.
