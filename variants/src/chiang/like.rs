@@ -172,14 +172,44 @@ const fn absorption(name: &'static str) -> Field {
     )
 }
 
+const fn roughness(name: &'static str) -> Field {
+    number(name, ROUGHNESS, "Longitudinal roughness.").optional()
+}
+
+const fn azimuthal_roughness(name: &'static str) -> Field {
+    number(name, ROUGHNESS, "Azimuthal roughness.").optional()
+}
+
+const fn tilt(name: &'static str) -> Field {
+    number(name, DEGREES, "Angle of the cuticle's scales, in degrees.").optional()
+}
+
+const fn index(name: &'static str) -> Field {
+    number(name, INDEX, "Index of refraction.").optional()
+}
+
+/// Melanin of pbrt and Mitsuba, in place of the absorption.
+const EUMELANIN: Field = number(
+    "eumelanin",
+    Rule::NotNegative,
+    "Concentration of eumelanin.",
+)
+.instead_of("sigma_a");
+const PHEOMELANIN: Field = number(
+    "pheomelanin",
+    Rule::NotNegative,
+    "Concentration of pheomelanin.",
+)
+.optional();
+
 const CYCLES: &[Field] = &[
-    number("roughness", ROUGHNESS, "Longitudinal roughness.").optional(),
-    number("radial_roughness", ROUGHNESS, "Azimuthal roughness.").optional(),
+    roughness("roughness"),
+    azimuthal_roughness("radial_roughness"),
     number("coat", SHARE, "How much smoother R is.").optional(),
     number("offset", ANGLE, "Angle of the cuticle's scales.")
         .radians()
         .optional(),
-    number("ior", INDEX, "Index of refraction.").optional(),
+    index("ior"),
     number("random", SHARE, "Random number of the strand.").optional(),
     number(
         "random_roughness",
@@ -232,8 +262,8 @@ fn cycles(values: &Values) -> Result<ChiangDesc, ParamError> {
 }
 
 const MATERIALX: &[Field] = &[
-    number("longitudinal", ROUGHNESS, "Longitudinal roughness.").optional(),
-    number("azimuthal", ROUGHNESS, "Azimuthal roughness.").optional(),
+    roughness("longitudinal"),
+    azimuthal_roughness("azimuthal"),
     number(
         "scale_TT",
         Rule::NotNegative,
@@ -252,7 +282,7 @@ const MATERIALX: &[Field] = &[
         "Angle of the cuticle's scales.",
     )
     .optional(),
-    number("ior", INDEX, "Index of refraction.").optional(),
+    index("ior"),
     share("tint_R", "Tint of R.").optional(),
     share("tint_TT", "Tint of TT.").optional(),
     share("tint_TRT", "Tint of TRT and of the rest.").optional(),
@@ -317,7 +347,7 @@ const OSL: &[Field] = &[
     number("offset", ANGLE, "Angle of the cuticle's scales.")
         .radians()
         .optional(),
-    number("IOR", INDEX, "Index of refraction.").optional(),
+    index("IOR"),
     absorption("absorption"),
     share("R_tint", "Tint of R.").optional(),
     share("TT_tint", "Tint of TT.").optional(),
@@ -343,29 +373,14 @@ fn osl(values: &Values) -> Result<ChiangDesc, ParamError> {
 }
 
 const PBRT: &[Field] = &[
-    number("beta_m", ROUGHNESS, "Longitudinal roughness.").optional(),
-    number("beta_n", ROUGHNESS, "Azimuthal roughness.").optional(),
-    number(
-        "alpha",
-        DEGREES,
-        "Angle of the cuticle's scales, in degrees.",
-    )
-    .optional(),
-    number("eta", INDEX, "Index of refraction.").optional(),
+    roughness("beta_m"),
+    azimuthal_roughness("beta_n"),
+    tilt("alpha"),
+    index("eta"),
     absorption("sigma_a"),
-    number(
-        "eumelanin",
-        Rule::NotNegative,
-        "Concentration of eumelanin.",
-    )
-    .instead_of("sigma_a"),
+    EUMELANIN,
     share("reflectance", "Colour of a mass of such hair.").instead_of("sigma_a"),
-    number(
-        "pheomelanin",
-        Rule::NotNegative,
-        "Concentration of pheomelanin.",
-    )
-    .optional(),
+    PHEOMELANIN,
 ];
 
 fn pbrt(values: &Values) -> Result<ChiangDesc, ParamError> {
@@ -388,34 +403,14 @@ fn pbrt(values: &Values) -> Result<ChiangDesc, ParamError> {
 }
 
 const MITSUBA: &[Field] = &[
-    number(
-        "longitudinal_roughness",
-        ROUGHNESS,
-        "Longitudinal roughness.",
-    )
-    .optional(),
-    number("azimuthal_roughness", ROUGHNESS, "Azimuthal roughness.").optional(),
-    number(
-        "scale_tilt",
-        DEGREES,
-        "Angle of the cuticle's scales, in degrees.",
-    )
-    .optional(),
+    roughness("longitudinal_roughness"),
+    azimuthal_roughness("azimuthal_roughness"),
+    tilt("scale_tilt"),
     number("int_ior", INDEX, "Index of refraction inside.").optional(),
     number("ext_ior", INDEX, "Index of refraction outside.").optional(),
     absorption("sigma_a"),
-    number(
-        "eumelanin",
-        Rule::NotNegative,
-        "Concentration of eumelanin.",
-    )
-    .instead_of("sigma_a"),
-    number(
-        "pheomelanin",
-        Rule::NotNegative,
-        "Concentration of pheomelanin.",
-    )
-    .optional(),
+    EUMELANIN,
+    PHEOMELANIN,
 ];
 
 fn mitsuba(values: &Values) -> Result<ChiangDesc, ParamError> {
