@@ -2,8 +2,7 @@
 """Bytes and calls of every entry point in builds of the program `entry`: sizes.py OPT_LEVEL=PROGRAM...
 
 Prints a table as CSV. Fails if an entry point of AVX2 or AVX-512 contains a call, in any of the builds: whatever the
-optimisation level, the kernel is inlined whole. At "s" two models call memset or memcpy, see COPIES. Those of the
-portable level go through `wide`, and are shown.
+optimisation level, the kernel is inlined whole. Those of the portable level go through `wide`, and are shown.
 """
 import re
 import subprocess
@@ -67,17 +66,6 @@ def entry(name):
         return (f"{found[2]}-{found[3]}" if found[3] else found[2]), model, found[1]
     return None
 
-# Calls of memset and memcpy that the compiler makes of buffers and shading points: by opt-level and model, at most.
-# Since the constants of a material are spread field by field, prepare8 copies those of its sampler at "s".
-COPIES = {
-    ("s", "kajiya-kay"): 1,
-    ("s", "chiang"): 2,
-    ("s", "gaussian"): 1,
-    ("s", "gaussian-matched"): 1,
-    ("s", "cauchy"): 1,
-    ("s", "cauchy-matched"): 1,
-}
-
 
 def body(program, table, address):
     """Bytes and calls of a function, or of the one that it does nothing but call."""
@@ -107,7 +95,7 @@ def main():
         cells = [",".join(map(str, found[b])) if b in found else "," for b in builds]
         print(f"{name},{model},{level}," + ",".join(cells))
         for build, (_, calls) in found.items():
-            if level.startswith("avx") and calls > COPIES.get((build, model), 0):
+            if level.startswith("avx") and calls:
                 print(f"FAIL {name} of {model} on {level} at opt-level {build}: {calls} calls", file=sys.stderr)
                 failed += 1
     if len(rows) < 40:

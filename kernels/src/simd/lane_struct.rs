@@ -133,18 +133,24 @@ impl<L: Lanes, T: Spread<L>, const N: usize> Spread<L> for [T; N] {
     type Stored = [T::Stored; N];
     #[inline(always)]
     fn spread(&self) -> [T::Stored; N] {
-        let mut stored = [self[0].spread(); N];
-        // Without a loop where arrays are short, because compilers that optimise for size keep loops.
-        macro_rules! each {
-            ($($i:literal)*) => { $(
-                if const { $i < N } {
-                    stored[$i] = self[$i].spread();
+        // Not `map`: closures over lanes are not inlined into functions of target features. Without a loop where arrays are short,
+        // because compilers that optimise for size keep loops.
+        macro_rules! chunk {
+            ($($i:literal)*) => {
+                if const { [$($i),*].len() == N } {
+                    let chunk = [$(self[const { if $i < N { $i } else { 0 } }].spread()),*];
+                    if let Some(stored) = chunk.first_chunk() {
+                        return *stored;
+                    }
                 }
-            )* };
+            };
         }
-        each!(1 2 3);
-        // Not `map`: closures over lanes are not inlined into functions of target features.
-        let mut i = 4;
+        chunk!(0);
+        chunk!(0 1);
+        chunk!(0 1 2);
+        chunk!(0 1 2 3);
+        let mut stored = [self[0].spread(); N];
+        let mut i = 1;
         while i < N {
             stored[i] = self[i].spread();
             i += 1;

@@ -232,7 +232,9 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     let path_length = twice_eta * cos_gamma_t * inv_inside;
     let [f, passed] = fresnel(cos_hit, k, eta_sq, eta_sq_less_one);
     L::stage("attenuation of each lobe in each channel");
-    let mut attenuation = [f.store(); 12];
+    // Not `[r; 12]`, which compilers that optimise for size make by a loop.
+    let r = f.store();
+    let mut attenuation = [r, r, r, r, r, r, r, r, r, r, r, r];
     let mut channel = 0;
     while channel < 3 {
         let (t, absorbed) = gaussian_and_complement(m.twice_sigma_a[channel].lanes() * path_length);
