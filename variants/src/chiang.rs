@@ -100,17 +100,12 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
         wi: &Direction<L>,
     ) -> PerLobe<LobeEval<L>> {
         let (pdf, inv_cos) = lobes::densities(prepared, wi);
-        let mut lobes = [LobeEval::none(); 4];
-        let mut p = 0;
-        while p < 4 {
-            lobes[p] = LobeEval {
-                value: pdf[p] * inv_cos,
-                color: gather::attenuation(prepared, p),
-                pdf: pdf[p],
+        macro_rules! each {
+            ($($p:literal)*) => {
+                PerLobe([$(LobeEval::new(pdf[$p] * inv_cos, gather::attenuation(prepared, $p), pdf[$p])),*])
             };
-            p += 1;
         }
-        PerLobe(lobes)
+        each!(0 1 2 3)
     }
 
     #[inline(always)]

@@ -65,13 +65,13 @@ impl<T: Copy> PerLobe<T> {
     #[must_use]
     pub fn padded<const N: usize>(values: [T; N], rest: T) -> Self {
         const { assert!(N <= Lobe::COUNT, "a model has at most 4 lobes") };
-        let mut all = [rest; Lobe::COUNT];
-        let mut l = 0;
-        while l < N {
-            all[l] = values[l];
-            l += 1;
+        // Written out, because compilers that optimise for size keep loops, and with them the array in memory.
+        macro_rules! slots {
+            ($($l:literal)*) => {
+                [$(if const { $l < N } { values[const { if $l < N { $l } else { 0 } }] } else { rest }),*]
+            };
         }
-        Self(all)
+        Self(slots!(0 1 2 3))
     }
 }
 
