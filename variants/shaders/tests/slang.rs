@@ -24,32 +24,41 @@ fn module(program: &Program, functions: &[Function]) -> String {
     print(&program, Language::Slang) + &driver(&program, Language::Slang)
 }
 
-/// Compiles an entry point of a module, or all, by the compiler of the Python that `HAIRIS_SLANG` names, to a file of a language. Returns
-/// `None` without one.
-fn compile(
+/// Compiles an entry point of a module, or all, by the compiler of the Python that `HAIRIS_SLANG` names, to a file of each language.
+/// Returns `None` without one.
+fn compile_to<const N: usize>(
     source: &str,
     dir: &Path,
-    language: &str,
+    languages: [&str; N],
     entry: Option<&str>,
     flags: &[&str],
-) -> Option<PathBuf> {
+) -> Option<[PathBuf; N]> {
     let Some(python) = env::var_os("HAIRIS_SLANG") else {
         println!("HAIRIS_SLANG names no Python with slangpy: skipped");
         return None;
     };
-    let out = format!("{}.{language}", entry.unwrap_or("all"));
-    let [file, out] = ["model.slang", &out].map(|name| dir.join(name));
-    let entry = entry.map_or(Vec::new(), |entry| {
-        vec!["-entry", entry, "-stage", "compute"]
-    });
+    let file = dir.join("model.slang");
     fs::write(&file, source).expect("the folder is ours");
-    let output = Command::new(python)
+    let mut command = Command::new(python);
+    command
         .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/slangc.py"))
         .arg(&file)
-        .args(["-target", language, "-fvk-use-entrypoint-name"])
-        .args(entry)
-        .arg("-o")
-        .arg(&out)
+        .arg("-fvk-use-entrypoint-name");
+    if let Some(entry) = entry {
+        command.args(["-entry", entry, "-stage", "compute"]);
+    }
+    let out = languages.map(|language| {
+        command.args(["-target", language]);
+        // The compiler knows CUDA's files by `.cu` alone.
+        dir.join(match language {
+            "cuda" => "module.cu".into(),
+            _ => format!("module.{language}"),
+        })
+    });
+    for path in &out {
+        command.arg("-o").arg(path);
+    }
+    let output = command
         .args(flags)
         .env("SLANG_RUN_SPIRV_VALIDATION", "1")
         .output()
@@ -57,15 +66,20 @@ fn compile(
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(
         output.status.success() && message.is_empty(),
-        "{language} {flags:?}: {message}"
+        "{languages:?} {flags:?}: {message}"
     );
     Some(out)
+}
+
+/// Compiles an entry point of a module, or all, to SPIR-V.
+fn compile(source: &str, dir: &Path, entry: Option<&str>, flags: &[&str]) -> Option<PathBuf> {
+    compile_to(source, dir, ["spirv"], entry, flags).map(|[out]| out)
 }
 
 /// Compiles a function to a compute shader by its name in SPIR-V, with arithmetic that keeps its order.
 pub(crate) fn precise(program: &Program, function: &Function, dir: &Path) -> Option<PathBuf> {
     let source = module(program, core::slice::from_ref(function));
-    compile(&source, dir, "spirv", Some(function.name()), &PRECISE)
+    compile(&source, dir, Some(function.name()), &PRECISE)
 }
 
 #[derive(Clone, Copy)]
@@ -77,30 +91,29 @@ impl Visitor for Languages {
     fn visit<M: Registered>(self) {
         let dir = TempDir::new().expect("a folder for the module");
         let program = Program::of::<M>(Target::Gpu);
+        let (name, spirv) = (program.name(), dir.path().join("hlsl.spv"));
+        let languages = ["wgsl", "hlsl", "metal", "cuda"];
         for (call, entry) in [
             (Call::EvalSampleHit, "eval_sample_hit"),
             (Call::EvalHit, "eval_hit_backward"),
         ] {
             let source = module(&program, &[program.function(call).clone()]);
-            for language in ["wgsl", "hlsl", "metal", "cuda"] {
-                let Some(out) = compile(&source, dir.path(), language, Some(entry), &[]) else {
-                    return;
-                };
-                let text = fs::read_to_string(&out).expect("the compiler wrote it");
-                assert!(text.contains(entry), "{language}: {entry}");
-                let [from, to] = [out, dir.path().join("hlsl.spv")];
-                let [from, to] = [&from, &to].map(|path| path.to_string_lossy());
-                let glslang = ["-D", "-V", "-S", "comp", "-e", entry, &from, "-o", &to];
-                if language == "hlsl"
-                    && let Some(Err(error)) = tool("glslangValidator", &glslang)
-                {
-                    panic!("{} {entry} by HLSL: {error}", program.name());
-                }
-                if language == "wgsl"
-                    && let Err(error) = translate(&text)
-                {
-                    panic!("{} {entry} by WGSL: {error}", program.name());
-                }
+            let Some(out) = compile_to(&source, dir.path(), languages, Some(entry), &[]) else {
+                return;
+            };
+            let text = out
+                .each_ref()
+                .map(|path| fs::read_to_string(path).expect("the compiler wrote it"));
+            for (language, text) in languages.iter().zip(&text) {
+                assert!(text.contains(entry), "{name} {entry} by {language}");
+            }
+            let [from, to] = [&out[1], &spirv].map(|path| path.to_string_lossy());
+            let glslang = ["-D", "-V", "-S", "comp", "-e", entry, &from, "-o", &to];
+            if let Some(Err(error)) = tool("glslangValidator", &glslang) {
+                panic!("{name} {entry} by HLSL: {error}");
+            }
+            if let Err(error) = translate(&text[0]) {
+                panic!("{name} {entry} by WGSL: {error}");
             }
         }
     }
@@ -119,7 +132,7 @@ fn slang_differentiates_every_function() {
     let dir = TempDir::new().expect("a folder for the module");
     let program = Program::of::<KajiyaKay>(Target::Gpu);
     let all = module(&program, program.functions());
-    compile(&all, dir.path(), "spirv", None, &[]);
+    compile(&all, dir.path(), None, &[]);
 }
 
 #[derive(Clone, Copy)]
@@ -138,7 +151,7 @@ impl Visitor for Accuracy {
             let program = Program::of::<M>(target);
             let calls = [Call::EvalHit, Call::SampleHit].map(|call| program.function(call));
             let source = module(&program, &calls.map(Clone::clone));
-            let Some(module) = compile(&source, driver.dir.path(), "spirv", None, &[]) else {
+            let Some(module) = compile(&source, driver.dir.path(), None, &[]) else {
                 return;
             };
             let name = format!("{} {target:?} in Slang", program.name());
@@ -164,7 +177,7 @@ fn backward(
 ) -> Option<Vec<f32>> {
     let source = edit(module(program, core::slice::from_ref(&cases.function)));
     let entry = format!("{}_backward", cases.function.name());
-    let module = compile(&source, driver.dir.path(), "spirv", Some(&entry), &[])?;
+    let module = compile(&source, driver.dir.path(), Some(&entry), &[])?;
     Some(driver.run(&module, &entry, &cases.gradient, &cases.all.concat()))
 }
 
@@ -189,7 +202,7 @@ impl Visitor for Derivatives {
             // The gradient of the graph, printed.
             let source = module(&program, core::slice::from_ref(&cases.gradient));
             let entry = cases.gradient.name();
-            let module = compile(&source, driver.dir.path(), "spirv", Some(entry), &[])
+            let module = compile(&source, driver.dir.path(), Some(entry), &[])
                 .expect("the compiler was there");
             let printed = driver.run(&module, entry, &cases.gradient, &cases.all.concat());
             cases.check(&printed, &format!("{name}, printed"));
