@@ -169,6 +169,10 @@ hairis_status hairis_params_init(hairis_params *to, const char *model, const cha
 hairis_status hairis_params_set(hairis_params *params, const char *field, const float *numbers, size_t count,
                                 hairis_error *error);
 hairis_status hairis_params_set_word(hairis_params *params, const char *field, const char *word, hairis_error *error);
+/* Initialises parameters of chiang in the terms of another renderer, with its defaults: "cycles", "materialx", "osl", "pbrt" or
+ * "mitsuba". hairis_params_set and hairis_params_set_word then take that renderer's names, which hairis_field_describe lists for the
+ * index in to->model. hairis_material_init converts, and refuses what is outside the range of either. */
+hairis_status hairis_params_like(hairis_params *to, const char *renderer, hairis_error *error);
 void hairis_artist_init(hairis_artist *to);
 hairis_status hairis_params_set_artist(hairis_params *params, const hairis_artist *from, hairis_error *error);
 

@@ -122,6 +122,12 @@ class Params {
                     static_cast<unsigned>(hairis_abi_version()), static_cast<unsigned>(HAIRIS_ABI_VERSION));
     });
   }
+  /// Makes parameters of chiang in the terms of another renderer, whose names `set` then takes: see hairis_params_like.
+  static Params like(const char *renderer, hairis_error &error) noexcept {
+    Params params;
+    detail::report(error, [&](hairis_error *to) { hairis_params_like(&params.params_, renderer, to); });
+    return params;
+  }
   Params &set(const char *field, std::initializer_list<float> numbers, hairis_error &error) noexcept {
     return set(field, numbers.begin(), numbers.size(), error);
   }
@@ -141,6 +147,11 @@ class Params {
 #if HAIRIS_THROWS
   explicit Params(const char *model, const char *choice = nullptr, const char *preset = nullptr) {
     detail::check([&](hairis_error &error) { *this = Params(model, choice, preset, error); });
+  }
+  static Params like(const char *renderer) {
+    Params params;
+    detail::check([&](hairis_error &error) { params = like(renderer, error); });
+    return params;
   }
   Params &set(const char *field, std::initializer_list<float> numbers) {
     return set(field, numbers.begin(), numbers.size());
@@ -164,6 +175,7 @@ class Params {
   const hairis_params &get() const noexcept { return params_; }
 
  private:
+  Params() = default;
   hairis_params params_{};
 };
 

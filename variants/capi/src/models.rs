@@ -1,11 +1,54 @@
 //! List of the models in the library, and calls on their types.
 
-use hairis_variants::ModelId;
+use hairis::ParamError;
+use hairis_variants::chiang::Likeness;
+use hairis_variants::{Field, ModelId, Parameters, Values};
 
 /// Returns the model of an index, or `None` if the index is out of range.
 pub(crate) fn at(index: u32) -> Option<ModelId> {
     let place = usize::try_from(index).ok()?;
     ModelId::ALL.get(place).copied()
+}
+
+/// Number of models that the library can have, which is the step between the indices of renderers.
+const MODELS: u32 = 1 << 8;
+
+/// Subject of parameters: a model, in its own fields or in those of another renderer.
+#[derive(Clone, Copy)]
+pub(crate) struct Subject {
+    /// Model of the material.
+    pub id: ModelId,
+    like: Option<&'static Likeness>,
+}
+
+impl Subject {
+    /// Returns the subject of an index: that of the model, and `MODELS` times the place of the renderer, counted from 1.
+    pub(crate) fn at(index: u32) -> Option<Self> {
+        let id = at(index % MODELS)?;
+        let like = match usize::try_from(index / MODELS).ok()? {
+            0 => None,
+            place => Some(Likeness::ALL.get(place - 1)?),
+        };
+        Some(Self { id, like })
+    }
+
+    /// Returns the index of the model, for a renderer at this place of the list.
+    pub(crate) const fn index_like(id: ModelId, place: u32) -> u32 {
+        (place + 1) * MODELS + id as u32
+    }
+
+    /// Returns the fields of the parameters.
+    #[must_use]
+    pub(crate) fn fields(self) -> &'static [Field] {
+        self.like
+            .map_or_else(|| self.id.fields(), |like| like.fields)
+    }
+
+    /// Returns the values of the model's own fields.
+    pub(crate) fn own(self, values: Values) -> Result<Values, ParamError> {
+        self.like
+            .map_or(Ok(values), |like| Ok(like.params(&values)?.values()))
+    }
 }
 
 /// Returns the tag of a model in handles, in which 0 stands for no model.

@@ -6,11 +6,12 @@ use crate::layout::{
     KIND_NUMBER, KIND_NUMBERS, KIND_RGB, KIND_WORD, ModelInfo, NAME, NUMBERS, OK, Params,
     RawMaterial, VALUE,
 };
-use crate::models::{self, visit};
+use crate::models::{self, Subject, visit};
 use crate::text::{Fault, List, array, copy, refuse, string};
 use core::ffi::c_char;
 use hairis::simd::Level;
 use hairis::{Conserving, Material, ParamError};
+use hairis_variants::chiang::{Chiang, Likeness};
 use hairis_variants::{FieldError, Kind, ModelId, Parameters, Registered, Values};
 
 const _: () = assert!(
@@ -55,9 +56,10 @@ pub extern "C" fn hairis_model_count() -> u32 {
 /// Implements `hairis_model_describe`: describes the model of an index.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_model_describe(model: u32, to: *mut ModelInfo) -> i32 {
-    let (Some(id), false) = (models::at(model), to.is_null()) else {
+    let (Some(subject), false) = (Subject::at(model), to.is_null()) else {
         return ARGUMENT;
     };
+    let id = subject.id;
     let (choice, word) = id.choice().unwrap_or_default();
     let mut lobe_names = [[0; 16]; 4];
     for (to, name) in lobe_names.iter_mut().zip(id.lobes()) {
@@ -69,7 +71,7 @@ pub unsafe extern "C" fn hairis_model_describe(model: u32, to: *mut ModelInfo) -
         word: array(word),
         lobe_names,
         lobes: count(id.lobes().len()),
-        fields: count(id.fields().len()),
+        fields: count(subject.fields().len()),
         presets: count(id.presets().count()),
         near_field: id.is_near_field().into(),
         is_default: id.is_default().into(),
@@ -82,7 +84,7 @@ pub unsafe extern "C" fn hairis_model_describe(model: u32, to: *mut ModelInfo) -
 /// Implements `hairis_field_describe`: describes a field of a model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_field_describe(model: u32, field: u32, to: *mut FieldInfo) -> i32 {
-    let fields = models::at(model).map_or(&[][..], ModelId::fields);
+    let fields = Subject::at(model).map_or(&[][..], Subject::fields);
     let index = usize::try_from(field).unwrap_or(usize::MAX);
     let (Some(field), false) = (fields.get(index), to.is_null()) else {
         return ARGUMENT;
@@ -134,8 +136,13 @@ pub unsafe extern "C" fn hairis_preset_name(
 /// Returns the values of a model's fields as parameters of the C interface.
 #[must_use]
 pub fn params_of(id: ModelId, values: &Values) -> Params {
+    params_at(id as u32, values)
+}
+
+/// Returns the values of fields as parameters of the C interface; `index` is that of the [`Subject`].
+fn params_at(index: u32, values: &Values) -> Params {
     let mut params = Params {
-        model: id as u32,
+        model: index,
         given: 0,
         numbers: [0.0; NUMBERS],
     };
@@ -150,26 +157,19 @@ pub fn params_of(id: ModelId, values: &Values) -> Params {
     params
 }
 
-/// Returns the model of parameters, and the values of its fields.
-///
-/// # Errors
-///
-/// Returns the status code if the parameters were not initialised, and writes the reason to `error` unless that is null.
-pub unsafe fn values_of(
-    params: *const Params,
-    error: *mut Error,
-) -> Result<(ModelId, Values), i32> {
+/// Returns the subject of parameters, and the values of its fields.
+unsafe fn read(params: *const Params, error: *mut Error) -> Result<(Subject, Values), i32> {
     // SAFETY: the caller's promise: null, or parameters.
     let params = unsafe { params.as_ref() };
-    let known = params.and_then(|params| Some((params, models::at(params.model)?)));
-    let Some((params, id)) = known.filter(|(params, _)| params.given != 0) else {
+    let known = params.and_then(|params| Some((params, Subject::at(params.model)?)));
+    let Some((params, subject)) = known.filter(|(params, _)| params.given != 0) else {
         let message = &"the parameters must be made by hairis_params_init";
         // SAFETY: the caller's promise.
         return Err(unsafe { refuse(error, ARGUMENT, &Fault::of("params"), message) });
     };
-    let mut values = Values::none(id.fields());
+    let mut values = Values::none(subject.fields());
     let mut rest = &params.numbers[..];
-    for (index, field) in id.fields().iter().enumerate() {
+    for (index, field) in subject.fields().iter().enumerate() {
         let (numbers, after) = rest.split_at(field.kind.width());
         rest = after;
         if params.given >> index & 1 == 1 {
@@ -177,7 +177,48 @@ pub unsafe fn values_of(
             let _ = values.set_at(index, numbers);
         }
     }
-    Ok((id, values))
+    Ok((subject, values))
+}
+
+/// Returns the model of parameters, and the values of its own fields.
+///
+/// # Errors
+///
+/// Returns the status code if the parameters were not initialised, or if those of another renderer describe no fibre, and writes the reason
+/// to `error` unless that is null.
+pub unsafe fn values_of(
+    params: *const Params,
+    error: *mut Error,
+) -> Result<(ModelId, Values), i32> {
+    // SAFETY: the caller's promise.
+    let (subject, values) = unsafe { read(params, error) }?;
+    match subject.own(values) {
+        Ok(values) => Ok((subject.id, values)),
+        // SAFETY: the caller's promise.
+        Err(fault) => Err(unsafe { refuse_value(error, &fault) }),
+    }
+}
+
+/// Implements `hairis_params_like`: initialises parameters of Chiang's fibre in the terms of another renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hairis_params_like(
+    to: *mut Params,
+    renderer: *const c_char,
+    error: *mut Error,
+) -> i32 {
+    // SAFETY: the caller's promise.
+    let (name, to) = unsafe { (string(renderer).unwrap_or_default(), to.as_mut()) };
+    let found = (0..).zip(Likeness::ALL).find(|(_, like)| like.name == name);
+    let (Some((place, like)), Some(to)) = (found, to) else {
+        let names = List(Likeness::ALL.iter().map(|like| like.name));
+        let message =
+            &format_args!("renderer must be one of {names}, and to not NULL; got {name:?}");
+        // SAFETY: the caller's promise.
+        return unsafe { refuse(error, NAME, &Fault::of("renderer"), message) };
+    };
+    let id = ModelId::of::<Chiang>();
+    *to = params_at(Subject::index_like(id, place), &like.defaults());
+    OK
 }
 
 /// Implements `hairis_params_init`: initialises parameters from a preset or from the defaults.
@@ -258,8 +299,8 @@ unsafe fn set(
     set: impl Fn(&mut Values, &str) -> Result<(), FieldError>,
 ) -> i32 {
     // SAFETY: the caller's promise.
-    let (name, read) = unsafe { (string(field).unwrap_or_default(), values_of(params, error)) };
-    let (id, mut values) = match read {
+    let (name, read) = unsafe { (string(field).unwrap_or_default(), read(params, error)) };
+    let (subject, mut values) = match read {
         Ok(read) => read,
         Err(code) => return code,
     };
@@ -270,11 +311,11 @@ unsafe fn set(
     match set(&mut values, name) {
         Ok(()) => {
             // SAFETY: the caller's promise.
-            unsafe { params.write(params_of(id, &values)) };
+            unsafe { (*params) = params_at((*params).model, &values) };
             OK
         }
         Err(FieldError::Name) => {
-            let names = List(id.fields().iter().map(|field| field.name));
+            let names = List(subject.fields().iter().map(|field| field.name));
             refuse(
                 NAME,
                 &format_args!("field must be one of {names}, got {name:?}"),

@@ -79,6 +79,29 @@ static void setup(void) {
   refused(hairis_params_set_artist(&params, NULL, &error), HAIRIS_ARGUMENT, "model", -1, "not NULL; got NULL");
   want(memcmp(&params, &before, sizeof params) == 0, "parameters change where an artist's control is refused");
 
+  refused(hairis_params_like(&params, "blender", &error), HAIRIS_NAME, "renderer", -1,
+          "renderer must be one of cycles, materialx, osl, pbrt, mitsuba, and to not NULL; got \"blender\"");
+  refused(hairis_params_like(NULL, "cycles", &error), HAIRIS_NAME, "renderer", -1, "not NULL; got \"cycles\"");
+  want(memcmp(&params, &before, sizeof params) == 0, "parameters change where a renderer is refused");
+  if (hairis_params_like(&params, "cycles", &error)) want(0, "parameters of Cycles");
+  refused(hairis_params_set(&params, "beta_m", numbers, 1, &error), HAIRIS_NAME, "beta_m", -1, "field must be one of roughness, ");
+  const float rough = 1.5f, degrees = 2, melanin[1] = {1.3f}, tilt = -2 * 3.14159265358979f / 180, third = 0.3f;
+  hairis_params_set(&params, "roughness", &rough, 1, &error);
+  static hairis_material like, own;
+  refused(hairis_material_init(&like, &params, HAIRIS_ENERGY_RAW, &error), HAIRIS_VALUE, "roughness", -1, "got 1.5");
+  if (hairis_params_like(&params, "pbrt", &error) || hairis_params_set(&params, "alpha", &degrees, 1, &error) ||
+      hairis_params_set(&params, "eumelanin", melanin, 1, &error) || hairis_material_init(&like, &params, HAIRIS_ENERGY_RAW, &error))
+    want(0, "parameters of pbrt");
+  hairis_field_info field;
+  want(hairis_field_describe(params.model, 0, &field) == 0 && strcmp(field.name, "beta_m") == 0, "a field of pbrt");
+  const float brown[2] = {1.3f, 0};
+  if (hairis_params_init(&params, "chiang", NULL, NULL, &error) || hairis_params_set(&params, "beta_m", &third, 1, &error) ||
+      hairis_params_set(&params, "beta_n", &third, 1, &error) || hairis_params_set(&params, "tilt", &tilt, 1, &error) ||
+      hairis_params_set(&params, "melanin", brown, 2, &error) || hairis_material_init(&own, &params, HAIRIS_ENERGY_RAW, &error))
+    want(0, "the same as chiang");
+  want(memcmp(&like, &own, sizeof own) == 0, "pbrt's parameters make another fibre");
+  if (hairis_params_init(&params, "gaussian", "matched", "brown", &error)) want(0, "a preset");
+
   hairis_material *material = (hairis_material *)(void *)guarded;
   hairis_params none;
   memset(&none, 0, sizeof none);

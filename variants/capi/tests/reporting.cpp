@@ -37,6 +37,11 @@ int main() {
   chiang.set("shifts", "small-angle", error);
   want(error.code == HAIRIS_OK && hairis::Model::all().size() == hairis_model_count(), "models");
 
+  hairis::Params cycles = hairis::Params::like("cycles", error).set("roughness", 0.2f, error);
+  hairis::Material like(cycles, Energy::Raw, error);
+  want(error.code == HAIRIS_OK && like.prepare({0.6f, 0.8f, 0}).eval_pdf({0, 1, 0}).pdf > 0, "another renderer's parameters");
+  want(cycles.model(error).fields.at(0).name == std::string("roughness"), "its fields");
+
   // The first error stays, whatever follows.
   hairis::Params unknown("hair", nullptr, nullptr, error);
   want(says(error, HAIRIS_NAME, "model", "got \"hair\""), "a model that there is not");

@@ -10,7 +10,13 @@ Field = float | Sequence[float] | NDArray[Any] | str
 
 class Material:
     def __new__(
-        cls, model: str = "gaussian", preset: str | None = None, *, energy: Energy = "conserving", **fields: Field
+        cls,
+        model: str = "gaussian",
+        preset: str | None = None,
+        *,
+        energy: Energy = "conserving",
+        like: str | None = None,
+        **fields: Field,
     ) -> Material: ...
     @staticmethod
     def from_json(text: str, *, energy: Energy = "conserving") -> Material: ...

@@ -18,6 +18,8 @@ use pyo3::prelude::*;
 /// energy : {"conserving", "raw", "scaled"}
 ///     With "conserving", no direction returns more light than arrives. With "raw", the model stays as it is. With "scaled", the
 ///     model is darker but stays reciprocal.
+/// like : {"cycles", "materialx", "osl", "pbrt", "mitsuba"}, optional
+///     Renderer whose names and defaults the fields of "chiang" have; the material has our fields.
 /// **fields
 ///     Values in place of the preset's values: numbers, sequences of numbers, or words. Angles are in radians, colours in linear RGB.
 ///     The field "sampler" of "gaussian" and "cauchy" and the field "select" of "chiang" choose how directions are sampled.
@@ -34,6 +36,8 @@ use pyo3::prelude::*;
 /// 0.5
 /// >>> eval(repr(hair)) == hair
 /// True
+/// >>> hairis.Material("chiang", like="cycles", roughness=0.2, coat=0.5).fields["beta_m"]
+/// 0.2
 /// >>> hairis.Material("gaussian", beta=(0.1, 0.0, 0.2))
 /// Traceback (most recent call last):
 /// ValueError: beta[1] must be a width in [1e-4, pi] rad, got 0

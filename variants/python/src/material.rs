@@ -8,7 +8,7 @@ use crate::hair::Material;
 use crate::hits::{all, call, inputs};
 use crate::shapes::{EVAL, PDF, SAMPLE, any_shape, one, pair};
 use crate::text;
-use crate::values::{CONSERVING, energy_of, number, params_of, vector, word};
+use crate::values::{CONSERVING, energy_of, number, params_like, params_of, vector, word};
 use hairis_capi::{hits, setup};
 use hairis_materials::MaterialSpec;
 use pyo3::exceptions::PyValueError;
@@ -29,17 +29,23 @@ fn offset_of(value: &Bound<'_, PyAny>) -> PyResult<f32> {
 impl Material {
     #[new]
     #[pyo3(
-        signature = (model="gaussian".to_owned(), preset=None, *, energy=CONSERVING, **fields),
-        text_signature = "(model='gaussian', preset=None, *, energy='conserving', **fields)"
+        signature = (model="gaussian".to_owned(), preset=None, *, energy=CONSERVING, like=None, **fields),
+        text_signature = "(model='gaussian', preset=None, *, energy='conserving', like=None, **fields)"
     )]
     fn new(
         #[pyo3(from_py_with = model_of)] model: String,
         preset: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = energy_of)] energy: (&'static str, u32),
+        like: Option<&Bound<'_, PyAny>>,
         fields: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let preset = preset.map(|preset| word(&"preset", preset)).transpose()?;
-        Self::of(&params_of(&model, preset.as_deref(), fields)?, energy)
+        let like = like.map(|like| word(&"like", like)).transpose()?;
+        let params = match like {
+            Some(like) => params_like(&model, preset.as_deref(), &like, fields)?,
+            None => params_of(&model, preset.as_deref(), fields)?,
+        };
+        Self::of(&params, energy)
     }
 
     /// Makes a material from a JSON object of `hairis eval`, which has "model", "params", and the field of its choice. The fields of a

@@ -5,6 +5,7 @@ use core::ffi::CStr;
 use core::fmt::Display;
 use hairis_capi::layout::{ENERGY_CONSERVING, ENERGY_RAW, ENERGY_SCALED, NUMBERS, Params};
 use hairis_capi::setup;
+use hairis_variants::chiang::Likeness;
 use hairis_variants::{Field, Kind, ModelId};
 use numpy::{PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
@@ -33,6 +34,47 @@ pub(crate) fn energy_of(value: &Bound<'_, PyAny>) -> PyResult<(&'static str, u32
     })
 }
 
+/// Makes parameters of Chiang's fibre in the terms of another renderer, with the values of `fields` in place of its defaults.
+pub(crate) fn params_like(
+    model: &str,
+    preset: Option<&str>,
+    renderer: &str,
+    fields: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Params> {
+    if let ("chiang", Some(preset)) = (model, preset) {
+        return Err(PyValueError::new_err(format!(
+            "preset must be None where like is given, got {preset:?}"
+        )));
+    }
+    if model != "chiang" {
+        return Err(PyValueError::new_err(format!(
+            "model must be \"chiang\" where like is given, got {model:?}"
+        )));
+    }
+    let Some(known) = Likeness::find(renderer).map(|like| like.fields) else {
+        let names: Vec<_> = Likeness::ALL.iter().map(|like| like.name).collect();
+        let names = names.join(", ");
+        return Err(PyValueError::new_err(format!(
+            "like must be one of {names}, got {renderer:?}"
+        )));
+    };
+    let name = c_string("like", renderer)?;
+    let (mut params, mut error) = (NONE, no_error());
+    // SAFETY: the arguments are of this call.
+    let status =
+        unsafe { setup::hairis_params_like(&raw mut params, name.as_ptr(), &raw mut error) };
+    check(status, &error)?;
+    set_all(&mut params, known, None, fields)?;
+    Ok(params)
+}
+
+/// Parameters that are not initialised.
+const NONE: Params = Params {
+    model: 0,
+    given: 0,
+    numbers: [0.0; NUMBERS],
+};
+
 /// Makes the parameters of a model or of its preset, with the values of `fields` in place of their own.
 pub(crate) fn params_of(
     model: &str,
@@ -52,12 +94,7 @@ pub(crate) fn params_of(
     let preset = preset.map(|preset| c_string("preset", preset));
     let (model, preset) = (c_string("model", model)?, preset.transpose()?);
     let pointer = |text: &Option<CString>| text.as_deref().map_or(core::ptr::null(), CStr::as_ptr);
-    let mut error = no_error();
-    let mut params = Params {
-        model: 0,
-        given: 0,
-        numbers: [0.0; NUMBERS],
-    };
+    let (mut params, mut error) = (NONE, no_error());
     // SAFETY: the arguments are of this call.
     let status = unsafe {
         let names = (model.as_ptr(), pointer(&chosen), pointer(&preset));
@@ -65,6 +102,17 @@ pub(crate) fn params_of(
     };
     check(status, &error)?;
     let known = ModelId::ALL[params.model as usize].fields();
+    set_all(&mut params, known, choice, fields)?;
+    Ok(params)
+}
+
+/// Sets fields to values from Python; the field of the model's choice has been read before.
+fn set_all(
+    params: &mut Params,
+    known: &[Field],
+    choice: Option<&str>,
+    fields: Option<&Bound<'_, PyDict>>,
+) -> PyResult<()> {
     let mut heads = Vec::new();
     for (name, value) in fields.into_iter().flatten() {
         let name = word(&"field", &name)?;
@@ -86,9 +134,9 @@ pub(crate) fn params_of(
             )));
         }
         heads.push((head, name));
-        set(&mut params, field, &value)?;
+        set(params, field, &value)?;
     }
-    Ok(params)
+    Ok(())
 }
 
 /// Describes a value in exceptions: an array by its numbers, anything else by its type.
