@@ -27,6 +27,7 @@ compile_error!(
 
 mod cauchy;
 pub mod chiang;
+pub mod d_eon;
 mod hair;
 pub mod kajiya_kay;
 mod parameters;
@@ -34,6 +35,7 @@ mod registry;
 
 pub use cauchy::Cauchy;
 pub use chiang::{Chiang, ChiangDesc, ChiangParams};
+pub use d_eon::{DEonDesc, DEonParams};
 pub use hair::{RegisteredBell, hair_desc};
 pub use kajiya_kay::{KajiyaKay, KajiyaKayDesc, KajiyaKayParams};
 pub use parameters::{Draw, Field, FieldError, Kind, Parameters, Values};
