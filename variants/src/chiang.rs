@@ -12,6 +12,7 @@ mod stand_ins;
 pub use far_field::{FarField, OffsetNodes};
 use gather::ChiangMaterial;
 pub use gather::ChiangPrepared;
+pub(crate) use gather::{Four, apart, four, same};
 pub use like::Likeness;
 pub use params::{ChiangDesc, ChiangParams, Shifts};
 

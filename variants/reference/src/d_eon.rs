@@ -302,7 +302,7 @@ impl<T: Real> DEonReference<T> {
         // A point of the side that is seen, and a direction about its normal by the cosine.
         let normal = (two * xi[0] - one).asin();
         let (radius, height) = (xi[1].sqrt(), (one - xi[1]).sqrt());
-        let turn = two * T::PI * xi[2];
+        let turn = T::PI * (two * xi[2] - one);
         let (along, across) = (radius * turn.sin(), radius * turn.cos());
         ([along, across.hypot(height)], normal + across.atan2(height))
     }

@@ -10,7 +10,7 @@
 //! | [`Matched`](hairis::Matched) over any bell | [`MatchedReference`] | ours |
 //! | [`KajiyaKay`](hairis_variants::KajiyaKay) | [`KajiyaKayReference`] | Kajiya & Kay 1989 |
 //! | [`Chiang`](hairis_variants::Chiang) | [`ChiangReference`] | Chiang et al. 2016 |
-//! | d'Eon's far field | [`DEonReference`], and as RTXCR has it [`RtxcrReference`] | d'Eon 2022 |
+//! | [`DEon`](hairis_variants::DEon) | [`DEonReference`], and as RTXCR has it [`RtxcrReference`] | d'Eon 2022 |
 //!
 //! All implement [`Reference`], and `Box<dyn Reference<f64>>` is the handle of a model chosen at run time: see [`reference()`] for
 //! the models of the registry, and [`HairFormulas`] for the published model. [`Formulas`] pairs a kernel with its formulas.

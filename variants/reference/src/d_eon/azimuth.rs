@@ -107,6 +107,9 @@ impl<T: Real> Passage<T> {
     }
 }
 
+/// Least weight of the Gaussian at the centre of TRT.
+const LEAST_CENTRE: f64 = 5e-5;
+
 /// Fit of TRT at one inclination: place of the two outer Gaussians, weights, and variances at a roughness of .06.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fit<T> {
@@ -192,8 +195,8 @@ impl<T: Real> ThreeGaussians<T> {
     pub(super) fn new(roughness: T, theta: T) -> Self {
         let (fit, two) = (Fit::new(theta), T::from_f64(2.0));
         let width = |variance: T| roughness / T::from_f64(0.06) * variance.sqrt();
-        // Next to 30 degrees the fit has a negative weight.
-        let (outer, centre) = (two * fit.outer, fit.centre.max(T::default()));
+        // Next to 30 degrees the fit has a negative weight; a least one above 0 also keeps the digits of the tail.
+        let (outer, centre) = (two * fit.outer, fit.centre.max(T::from_f64(LEAST_CENTRE)));
         Self {
             place: fit.place,
             outer: Gaussian::new(fit.place, width(fit.outer_variance)),
