@@ -24,6 +24,7 @@ PACKETS = {
 OF_MODEL = {"Weighs": "weigh_columns", "ProposalsOf": "propose8-points", "WeighOf": "weigh8-points"}
 MODELS = {
     "Chiang": "chiang",
+    "DEon": "d-eon",
     "KajiyaKay": "kajiya-kay",
     "Gaussian": "gaussian",
     "Cauchy": "cauchy",

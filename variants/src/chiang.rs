@@ -16,6 +16,8 @@ pub(crate) use gather::{Four, apart, four, same};
 pub use like::Likeness;
 pub use params::{ChiangDesc, ChiangParams, Shifts};
 
+pub(crate) use stand_ins::by_melanin;
+
 use hairis::model::{Direction, LobeEval, LobeModel};
 use hairis::simd::{Broadcast, Lanes, Scalar};
 use hairis::{Hit, PerLobe};

@@ -1,5 +1,6 @@
 #![doc = include_str!("guide/d_eon.md")]
 
+mod fields;
 mod lobes;
 mod params;
 mod prepare;

@@ -9,6 +9,7 @@ use crate::quadrature::integrate;
 use crate::real::Real;
 use crate::steps::{Fixed, GRAZING, choose, finish_sample, fixed, inclination, mix, sum_to_one};
 use azimuth::{Passage, ThreeGaussians, mean_reflectance, normal_reflectance, schlick};
+use hairis::params::Pigments;
 use hairis::{Lobe, LobeMask, PerLobe};
 use hairis_variants::DEonDesc;
 
@@ -63,6 +64,15 @@ pub struct DEonReference<T> {
     probabilities: PerLobe<T>,
 }
 
+/// Returns the absorption of these concentrations of eumelanin and pheomelanin, with d'Eon's pigments.
+pub(crate) fn absorption_of_melanin<T: Real>([eumelanin, pheomelanin]: [T; 2]) -> [T; 3] {
+    let Pigments {
+        eumelanin: e,
+        pheomelanin: p,
+    } = Pigments::D_EON;
+    [0, 1, 2].map(|c| T::from_f32(e[c]) * eumelanin + T::from_f32(p[c]) * pheomelanin)
+}
+
 impl<T: Real> DEonReference<T> {
     /// Computes the constants of `parameters` and `wo`.
     #[inline]
@@ -102,19 +112,17 @@ impl<T: Real> DEonReference<T> {
         let inv_cos_t = eta / (contrast + k * k).sqrt();
         let depth = sigma_a.map(|sigma| two * sigma * inv_cos_t);
         let passage = Passage::new(eta, k);
-        let [mean, square] = mean_reflectance(f0, k);
+        let [mean, passed, both] = mean_reflectance(f0, k);
         let kept = one - diffuse;
-        let attenuation_trt =
-            depth.map(|depth| kept * (mean - square) * (number(-1.875) * depth).exp());
+        let attenuation_trt = depth.map(|depth| kept * both * (number(-1.875) * depth).exp());
         let diffuse = diffuse_color.map(|c| diffuse * c);
 
         // The mean of F, TT along its shortest path, TRT and the diffuse lobe.
         let shortest = passage.cos_gamma_t(one);
         let mean_of = |rgb: [T; 3]| (rgb[0] + rgb[1] + rgb[2]) / number(3.0);
-        let clear_tt = one - two * mean + square;
         let probabilities = sum_to_one([
             kept * mean,
-            kept * clear_tt * mean_of(depth.map(|depth| (-depth * shortest).exp())),
+            kept * passed * mean_of(depth.map(|depth| (-depth * shortest).exp())),
             mean_of(attenuation_trt),
             mean_of(diffuse),
         ]);

@@ -43,18 +43,40 @@ const TENTH: [f64; 11] = [
     0.369_408_369_408_369_41,
 ];
 
-/// Means over the width of the fibre of Schlick's reflectance and of its square, at `k = cos theta`.
-pub(super) fn mean_reflectance<T: Real>(f0: T, k: T) -> [T; 2] {
+/// Cosine below which the complements of the integrals are series in the cosine.
+const GRAZING: f64 = 0.15;
+
+/// Computes the integral of `(1 - (1 - k cos g)^n) cos g` over `g` in `[0, pi/2]`, by the binomial series in `k`. It alternates, so that `k`
+/// must be small.
+fn complement<T: Real>(n: u32, k: T) -> T {
+    let number = |x: u32| T::from_f64(f64::from(x));
+    // Integrals of powers of the cosine: of the power before, and of this one.
+    let (mut integrals, mut power, mut sum) =
+        ([number(1), T::PI / number(4)], -number(1), T::default());
+    for j in 1..=n {
+        power = -power * k * number(n + 1 - j) / number(j);
+        sum = sum + power * integrals[1];
+        integrals = [integrals[1], integrals[0] * number(j + 1) / number(j + 2)];
+    }
+    sum
+}
+
+/// Means over the width of the fibre, at `k = cos theta`, of Schlick's reflectance F, of `(1 - F)^2` and of `F (1 - F)`.
+pub(super) fn mean_reflectance<T: Real>(f0: T, k: T) -> [T; 3] {
     let (one, two) = (T::from_f64(1.0), T::from_f64(2.0));
     let series = |coefficients: &[f64]| {
         let terms = coefficients.iter().rev();
         terms.fold(T::default(), |sum, c| sum * (one - k) + T::from_f64(*c))
     };
-    let (fifth, tenth, rest) = (series(&FIFTH), series(&TENTH), one - f0);
-    [
-        f0 + rest * fifth,
-        f0 * f0 + two * f0 * rest * fifth + rest * rest * tenth,
-    ]
+    let (fifth, rest) = (series(&FIFTH), one - f0);
+    let mean = f0 + rest * fifth;
+    if k < T::from_f64(GRAZING) {
+        let (once, twice) = (complement(5, k), complement(10, k));
+        let passed = rest * rest * (two * once - twice);
+        return [mean, passed, rest * once - passed];
+    }
+    let square = f0 * f0 + two * f0 * rest * fifth + rest * rest * series(&TENTH);
+    [mean, one - two * mean + square, mean - square]
 }
 
 /// TT at one inclination: `q = 1 / eta'`, of the projected index `eta'`.
