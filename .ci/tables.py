@@ -243,7 +243,7 @@ def refits():
 def exhaustive():
     """Largest errors of the elementary functions over all floats of their domains."""
     record = Record("exhaustive.csv")
-    number = lambda text: f"{float(text):.6g}"
+    number = lambda text: ", ".join(f"{float(x):.6g}" for x in text.split())
     rows = [[f"`{row['function']}`", row["result"], f"{number(row['first'])} to {number(row['last'])}", row["unit"],
              three(float(row["one lane"])), number(row["one lane at"]), three(float(row["fused"])), number(row["fused at"])]
             for row in record.rows]
