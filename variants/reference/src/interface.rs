@@ -126,6 +126,54 @@ pub trait Reference<T: Real>: Debug + Send + Sync {
         None
     }
 
+    /// Returns the relative errors that each lobe's value and density may have in the kernels, which compute in single precision. They
+    /// follow from the rounding of angles and the steepness of the lobe at `wi`. `None` unless the formulas have them, and next to the axis.
+    #[must_use]
+    fn lobe_errors(&self, wi: [T; 3]) -> Option<PerLobe<[T; 2]>> {
+        let _ = wi;
+        None
+    }
+
+    /// Returns the relative error that a channel of a lobe's colour may have in the kernels, of a model that computes its colours.
+    #[must_use]
+    fn color_error(&self, lobe: Lobe, channel: usize) -> T {
+        let _ = (lobe, channel);
+        T::default()
+    }
+
+    /// Returns the absolute errors that S and the density may have in the kernels: those of the lobes and of their colours, weighed as the
+    /// lobes are. A lobe's probability has the error of its colour.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use hairis::{Gaussian, HairParams, Material, Published};
+    /// use hairis_reference::{HairReference, Reference, Shape};
+    /// let params = HairParams::brown();
+    /// let hair = Material::new(&Published(Gaussian), &params).prepare(Vec3::Y);
+    /// let formulas = HairReference::prepare(&params.desc().map(f64::from), Shape::Gaussian, [0.0, 1.0, 0.0]);
+    /// let (got, want) = (hair.pdf(Vec3::Z), formulas.pdf([0.0, 0.0, 1.0]));
+    /// let (_, allowed) = formulas.error_bound([0.0, 0.0, 1.0]).expect("off the axis");
+    /// assert!((f64::from(got) - want).abs() <= allowed && allowed < 1e-5 * want);
+    /// ```
+    #[must_use]
+    fn error_bound(&self, wi: [T; 3]) -> Option<([T; 3], T)> {
+        let errors = self.lobe_errors(wi)?;
+        let (lobes, shares) = (self.lobes(wi), self.probabilities());
+        let (mut value, mut pdf) = ([T::default(); 3], T::default());
+        for lobe in Lobe::ALL {
+            let (at, [of_value, of_pdf]) = (&lobes[lobe], errors[lobe]);
+            let (mut sum, mut wrong) = (T::default(), T::default());
+            for (c, value) in value.iter_mut().enumerate() {
+                let (color, error) = (at.color[c], self.color_error(lobe, c));
+                *value = *value + at.value * color * (of_value + error);
+                (sum, wrong) = (sum + color, wrong + color * error);
+            }
+            let of_share = if sum > T::default() { wrong / sum } else { sum };
+            pdf = pdf + at.pdf * shares[lobe] * (of_pdf + of_share);
+        }
+        Some((value, pdf))
+    }
+
     /// Returns the inclinations, in rad, at which the density jumps whatever the azimuth.
     #[must_use]
     fn jumps(&self) -> Vec<T> {
