@@ -16,7 +16,7 @@ const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 pub(crate) struct Coordinates<'a> {
     of: &'a [f32],
     taken: usize,
-    /// What the coordinates stand for, if it is asked for.
+    /// Description of the coordinates taken so far, if it is asked for.
     notes: Option<String>,
 }
 
