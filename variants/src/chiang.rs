@@ -37,9 +37,10 @@ use hairis::{Hit, PerLobe};
 /// - Selection of a lobe: by the mean of `A_p` over the channels ([`Chiang::MEAN`], the default), or by its share in each channel
 ///   ([`Chiang::BY_CHANNEL`]). The latter leaves a third of the variance of the worst channel of red hair.
 /// - Source: Chiang et al. 2016; d'Eon et al. 2011 (`M_p`) and 2013 (its sampling); `ERRATA.md` of this package.
-/// - Accuracy: value, density and each lobe are accurate to `5e-6 + 5e-7 / min(sqrt(v), s)` of the narrowest lobe, further than 1e-3 rad from the axis:
-///   to 1e-5 for roughnesses of .3, to 3e-5 for .1, and to 3e-3 for 1e-3. The first term is the error of the arithmetic. The second
-///   is the rounding of angles, about 1e-7 rad, times the steepness of the lobe. Below `exp(-12)` of the peak of `M_p` the error
+/// - Accuracy: value, density and each lobe are accurate to `6.5e-6 + 1.2e-6 / sqrt(v) + 5e-7 (1 + p) / s`, further than 1e-3 rad from the
+///   axis: to 2.4e-5 for roughnesses of .3, to 8e-5 for .1 (4.5e-5 for everyday indices and tilts), and to 1e-2 for 1e-3. The first term is the
+///   error of the arithmetic. The others are the rounding of angles times the steepness of the lobe. A channel that is absorbed errs
+///   besides by 3.6e-7 of its optical depth. Below `exp(-12)` of the peak of `M_p` the error
 ///   grows as the exponent does, and lobes end at about `2^-115` of the peak.
 ///
 /// ```

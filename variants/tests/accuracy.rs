@@ -4,7 +4,7 @@
 //! A direction that is an angle `d` off changes a lobe by `|d ln M / d theta| d`. The highlights are bells, of exponent E in
 //! their tails: the derivative of `exp(-E)`, `E = x^2 / 2v`, is `sqrt(2E / v)`. The exponent's own rounding adds a few `E eps`.
 
-use crate::fiber::{narrowest, vary};
+use crate::fiber::vary;
 use crate::support::{Draws, direction, narrow, packet};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
@@ -12,9 +12,7 @@ use hairis::model::{LobeEval, Model};
 use hairis::simd::Level;
 use hairis::{Bsdf, Eval, Hit, Lobe, Material, PerLobe, Sample};
 use hairis_conformance::comparison::{LargestError, relative};
-use hairis_reference::{
-    ChiangFormulas, ChiangReference, KajiyaKayReference, LobeAt, Reference, Selection,
-};
+use hairis_reference::{ChiangReference, KajiyaKayReference, LobeAt, Reference, Selection};
 use hairis_variants::KajiyaKay;
 use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParams, Shifts};
 use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc, KajiyaKayParams};
@@ -75,15 +73,14 @@ struct Errors {
 }
 
 impl Errors {
-    /// Each lobe to its bound; S and density to the bounds of the lobes they are the sum of.
+    /// Each lobe to its bound, S and density to theirs.
     fn see_eval(
         &mut self,
         (lobes, evals): (PerLobe<LobeEval>, [Eval; 2]),
         (book, want): (PerLobe<LobeAt<f64>>, ([f64; 3], f64)),
-        (bounds, shares): ([f64; 4], PerLobe<f64>),
+        (bounds, (value, pdf)): ([f64; 4], ([f64; 3], f64)),
         at: &impl Fn() -> String,
     ) {
-        let mut allowed = [LEAST; 4];
         for lobe in Lobe::ALL {
             let (got, want, bound) = (&lobes[lobe], &book[lobe], bounds[lobe.index()]);
             if want.pdf > LEAST {
@@ -96,20 +93,16 @@ impl Errors {
                     || format!("S of {lobe:?}: {}", at()),
                 );
             }
-            for (allowed, color) in allowed.iter_mut().zip(want.color) {
-                *allowed += want.value * color * bound;
-            }
-            allowed[3] += want.pdf * shares[lobe] * bound;
         }
         for got in evals {
-            for (c, (&got, &allowed)) in got.value.iter().zip(&allowed).enumerate() {
-                self.sums
-                    .see((f64::from(got) - want.0[c]).abs() / allowed, || {
-                        format!("S, channel {c}: {}", at())
-                    });
+            for (c, (&got, &allowed)) in got.value.iter().zip(&value).enumerate() {
+                self.sums.see(
+                    (f64::from(got) - want.0[c]).abs() / (allowed + LEAST),
+                    || format!("S, channel {c}: {}", at()),
+                );
             }
             self.sums
-                .see((f64::from(got.pdf) - want.1).abs() / allowed[3], || {
+                .see((f64::from(got.pdf) - want.1).abs() / (pdf + LEAST), || {
                     format!("density: {}", at())
                 });
         }
@@ -213,17 +206,9 @@ fn the_energy_conserving_fibre_is_as_accurate_as_its_widths_allow() {
                 }
             }
         }
-        // Peaks are as steep as they are narrow; beyond exp(-12) of the peak errors grow with the exponent.
-        let (v, width) = (p.variances(), narrowest(&desc));
         let shares = book.probabilities();
         let (xi, samples, wi) = directions(&bsdf, &mut draws);
-        let bounds_at = |d: [f64; 3]| {
-            let theta_i = d[0].atan2(d[1].hypot(d[2]));
-            Lobe::ALL.map(|lobe| {
-                let half = (0.5 * (theta_i - book.cone(lobe))).sin();
-                (6.5e-6 + 6.5e-7 / width) * (2.0 * half * half / v[lobe] / 12.0).max(1.0)
-            })
-        };
+        let bounds_at = |d: [f64; 3]| book.lobe_errors(d).unwrap().0.map(|[value, _]| value);
         for (k, evals) in evals(&bsdf, &wi).into_iter().enumerate() {
             let d = double(wi[k]);
             let bounds = bounds_at(d);
@@ -231,7 +216,7 @@ fn the_energy_conserving_fibre_is_as_accurate_as_its_widths_allow() {
             errors.see_eval(
                 (bsdf.lobes(wi[k]), evals),
                 (book.lobes(d), book.eval_pdf(d)),
-                (bounds, shares),
+                (bounds, book.error_bound(d).unwrap()),
                 &at,
             );
             let Some(sample) = &samples[k] else { continue };
@@ -309,17 +294,8 @@ fn kajiya_and_kay_s_fibre_is_as_accurate_as_its_exponent_allows() {
             let bsdf = Material::new(&KajiyaKay, &params).prepare(hit);
             let wo = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
             let book = KajiyaKayReference::prepare(&params.desc().map(f64::from), wo);
-            let theta_o = wo[0].atan2(wo[1].hypot(wo[2]));
             let (_, samples, wi) = directions(&bsdf, &mut draws);
-            let bounds_at = |d: [f64; 3]| {
-                let sum = theta_o + d[0].atan2(d[1].hypot(d[2]));
-                // cos^p changes by p tan(sum) per radian, and the cosine itself is rounded twice; its logarithm is rounded; the
-                // density has 1 / cos theta_i.
-                let p = f64::from(desc.exponent);
-                let specular = 3e-6 + p * (1.0 + 2.0 * sum.tan().abs()) * ANGLE
-                    - 4e-7 * p * sum.cos().max(1e-300).ln();
-                [1e-6, specular, 1.0, 1.0]
-            };
+            let bounds_at = |d: [f64; 3]| book.lobe_errors(d).unwrap().0.map(|[value, _]| value);
             for (k, evals) in evals(&bsdf, &wi).into_iter().enumerate() {
                 let d = double(wi[k]);
                 let bounds = bounds_at(d);
@@ -328,7 +304,7 @@ fn kajiya_and_kay_s_fibre_is_as_accurate_as_its_exponent_allows() {
                 errors.see_eval(
                     (bsdf.lobes(wi[k]), evals),
                     (book.lobes(d), want),
-                    (bounds, book.probabilities()),
+                    (bounds, book.error_bound(d).unwrap()),
                     &at,
                 );
                 if exponent <= 1000.0 {

@@ -1,28 +1,50 @@
-//! The functions of one number, with their domains, their values in double precision and the units of their errors.
+//! The functions of one number, with their domains, their values in double precision and the units of their errors. Those of several numbers are
+//! in [`pairs`](crate::pairs).
 
+use crate::floats::{at_place, place};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 use hairis::model::math;
 use hairis::simd::{Lanes, Row};
 
-/// Function of one number with up to two results.
-pub(crate) trait Function: Row<3, 2> + Default + Sync {
+/// Function of up to four numbers with up to two results.
+pub(crate) trait Function: Row<4, 2> + Default + Sync {
     /// Name in `hairis::model::math` or `hairis::simd::Lanes`, with the arguments where they are not the number itself.
     const NAME: &'static str;
     /// Names of the results.
     const RESULTS: &'static [&'static str];
     /// Unit of the errors.
     const UNIT: Unit;
-    /// First and last number of the domain.
+    /// First and last number of the domain, or of what the name says.
     const DOMAIN: [f32; 2];
+    /// Number of numbers that are chosen; the others follow from them or are not read.
+    const NUMBERS: usize = 1;
 
-    /// Arguments of the function, which are the number and what follows from it.
-    fn arguments(x: f32) -> [f32; 3];
+    /// Count of steps: of one number, all floats of the domain.
+    fn steps() -> u64 {
+        let [first, last] = Self::DOMAIN.map(place);
+        last.abs_diff(first) + 1
+    }
+
+    /// Numbers of a step.
+    #[inline(always)]
+    fn numbers(step: u64) -> [f32; 4] {
+        let number = at_place(place(Self::DOMAIN[0]).wrapping_add_unsigned(step));
+        [number, 0.0, 0.0, 0.0]
+    }
+
+    /// True if the numbers are in the domain.
+    fn holds(_numbers: [f32; 4]) -> bool {
+        true
+    }
+
+    /// Arguments of the function, which are the numbers and what follows from them.
+    fn arguments(numbers: [f32; 4]) -> [f32; 4];
 
     /// Results in double precision for these arguments.
-    fn exact(arguments: [f64; 3]) -> [f64; 2];
+    fn exact(arguments: [f64; 4]) -> [f64; 2];
 
     /// Errors of the results, where they do not follow from [`exact`](Self::exact).
-    fn errors(_arguments: [f64; 3], _got: [f32; 2]) -> Option<[f64; 2]> {
+    fn errors(_arguments: [f64; 4], _got: [f32; 2]) -> Option<[f64; 2]> {
         None
     }
 }
@@ -78,9 +100,9 @@ macro_rules! functions {
             #[derive(Clone, Copy, Debug, Default)]
             pub(crate) struct $name;
 
-            impl Row<3, 2> for $name {
+            impl Row<4, 2> for $name {
                 #[inline(always)]
-                fn row<L: Lanes>(self, [$a, $b, $c]: [L; 3]) -> [L; 2] {
+                fn row<L: Lanes>(self, [$a, $b, $c, _]: [L; 4]) -> [L; 2] {
                     $lanes
                 }
             }
@@ -91,16 +113,17 @@ macro_rules! functions {
                 const UNIT: Unit = Unit::$unit;
                 const DOMAIN: [f32; 2] = $domain;
                 #[inline(always)]
-                fn arguments($x: f32) -> [f32; 3] {
-                    $arguments
+                fn arguments([$x, ..]: [f32; 4]) -> [f32; 4] {
+                    let [a, b, c] = $arguments;
+                    [a, b, c, 0.0]
                 }
                 #[inline(always)]
-                fn exact([$p, $q, $r]: [f64; 3]) -> [f64; 2] {
+                fn exact([$p, $q, $r, _]: [f64; 4]) -> [f64; 2] {
                     $exact
                 }
                 $(
                     #[inline(always)]
-                    fn errors([$e, _, _]: [f64; 3], $got: [f32; 2]) -> Option<[f64; 2]> {
+                    fn errors([$e, ..]: [f64; 4], $got: [f32; 2]) -> Option<[f64; 2]> {
                         Some($errors)
                     }
                 )?
@@ -109,14 +132,14 @@ macro_rules! functions {
 
         /// Calls `$visit` with every function.
         macro_rules! each_function {
-            ($visit:ident) => { $($visit!($name);)* };
+            ($visit:ident) => { $($visit!(crate::functions::$name);)* };
         }
         pub(crate) use each_function;
     };
 }
 
 /// Cosine of an angle whose sine is given, as a float.
-fn other_side(x: f32) -> f32 {
+pub(crate) fn other_side(x: f32) -> f32 {
     let x = f64::from(x);
     #[expect(
         clippy::cast_possible_truncation,

@@ -1,18 +1,21 @@
 //! Elementary functions of [`hairis::model::math`] at every float of their domains, on one lane and on every level of this CPU, against
-//! double precision.
+//! double precision. Functions of several numbers are evaluated on the sets that [`pairs`] states.
 //!
 //! - `hairis-exhaustive RECORD`: sweeps over all floats, and writes a row for each result to RECORD; functions that the file has are
 //!   left out, so that a run that was stopped goes on. Takes minutes.
-//! - `hairis-exhaustive check RECORD [STRIDE]`: sweeps over one float in STRIDE (1009 if it is left out) from an offset that differs
+//! - `hairis-exhaustive check RECORD [STRIDE]`: sweeps over one step in STRIDE (1009 if it is left out) from an offset that differs
 //!   from run to run and is printed, and fails if an error is larger than that of the record, if levels differ in a bit that must
 //!   have the same bits, or if an exception is raised.
 
+mod floats;
 mod functions;
+mod pairs;
 mod sweep;
 
 use core::error::Error;
 use functions::{Function, each_function};
 use hairis::simd::Level;
+use pairs::each_pair;
 use std::env::args;
 use std::fs;
 use std::io::Write;
@@ -27,20 +30,29 @@ function,result,first,last,arguments,unit,one lane,one lane at,fused,fused at";
 /// Number of fields of a row.
 const ROW: usize = 10;
 
+/// Numbers at which an error is largest.
+fn place<F: Function>(at: [f32; 4]) -> String {
+    at[..F::NUMBERS]
+        .iter()
+        .map(|x| format!("{x:e}"))
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
 /// Rows of a function, one for each result.
 fn rows<F: Function>(found: &Found) -> Vec<String> {
     let rows = F::RESULTS.iter().enumerate().map(|(i, result)| {
         let [first, last] = F::DOMAIN;
         let [one, fused] = found.worst.map(|worst| worst[i]);
         format!(
-            "\"{}\",{result},{first:e},{last:e},{},{},{:.4e},{:e},{:.4e},{:e}",
+            "\"{}\",{result},{first:e},{last:e},{},{},{:.4e},{},{:.4e},{}",
             F::NAME,
             found.arguments,
             F::UNIT.name(),
             one.error,
-            one.at,
+            place::<F>(one.at),
             fused.error,
-            fused.at
+            place::<F>(fused.at)
         )
     });
     rows.collect()
@@ -78,8 +90,8 @@ fn record(path: &str) -> Result<Vec<String>, Box<dyn Error>> {
     }
     let mut all = Vec::new();
     macro_rules! visits {
-        ($Function:ident) => {{
-            type F = functions::$Function;
+        ($Function:ty) => {{
+            type F = $Function;
             if !text.contains(&format!("\n\"{}\",", F::NAME)) {
                 let found = sweep::<F>(Choice {
                     stride: 1,
@@ -94,6 +106,7 @@ fn record(path: &str) -> Result<Vec<String>, Box<dyn Error>> {
         }};
     }
     each_function!(visits);
+    each_pair!(visits);
     Ok(all)
 }
 
@@ -116,8 +129,8 @@ fn check(path: &str, choice: Choice) -> Result<Vec<String>, Box<dyn Error>> {
     let (mut arguments, mut closest) = (0, 0.0_f64);
     let fuses = Level::available().any(Level::fuses);
     macro_rules! visits {
-        ($Function:ident) => {{
-            type F = functions::$Function;
+        ($Function:ty) => {{
+            type F = $Function;
             let found = sweep::<F>(choice);
             arguments += found.arguments;
             all.extend(faults::<F>(&found));
@@ -125,18 +138,29 @@ fn check(path: &str, choice: Choice) -> Result<Vec<String>, Box<dyn Error>> {
                 let most = recorded(&text, F::NAME, result)?;
                 let arithmetics = if fuses { 2 } else { 1 };
                 let all_lanes = ["one lane", "lanes that fuse"];
-                for ((worst, most), lanes) in found.worst.iter().zip(most).zip(all_lanes).take(arithmetics) {
+                for ((worst, most), lanes) in found
+                    .worst
+                    .iter()
+                    .zip(most)
+                    .zip(all_lanes)
+                    .take(arithmetics)
+                {
                     let Worst { error, at } = worst[i];
                     closest = closest.max(error / most);
                     // The record has five digits.
                     if error > most * 1.0001 {
-                        all.push(format!("{} {result} on {lanes}: {error:.4e} at {at:e}, {most:.4e} in the record", F::NAME));
+                        all.push(format!(
+                            "{} {result} on {lanes}: {error:.4e} at {}, {most:.4e} in the record",
+                            F::NAME,
+                            place::<F>(at)
+                        ));
                     }
                 }
             }
         }};
     }
     each_function!(visits);
+    each_pair!(visits);
     println!("{arguments} arguments: largest error {closest:.3} of the record");
     Ok(all)
 }
@@ -149,7 +173,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let stride = rest.first().map_or(Ok(1009), |word| word.parse())?;
             let now = SystemTime::now().duration_since(UNIX_EPOCH)?;
             let offset = u64::from(now.subsec_nanos()) % stride;
-            println!("one float in {stride}, from the {offset}th on");
+            println!("one step in {stride}, from the {offset}th on");
             check(path, Choice { stride, offset })?
         }
         [path] if path != "check" && !path.starts_with('-') => record(path)?,

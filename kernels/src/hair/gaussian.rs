@@ -42,7 +42,7 @@ impl Bell for Gaussian {
 
 /// Bell whose integral is a probability. On intervals above the centre the integral is minus the probability above `x`.
 ///
-/// - Accuracy: the integral of an inverted point is within 2e-7 of the given one, and within 2.1e-4 of the probability beyond
+/// - Accuracy: the integral of an inverted point is within 2e-7 of the given one, and within 2.2e-4 of the probability beyond
 ///   it (5e-5 where that is at least `2^-30`).
 impl MatchedBell for Gaussian {
     /// Area under a Gaussian of deviation 1: `sqrt(2 pi)`.

@@ -1,8 +1,8 @@
 //! Elementary functions on the ranges that the models use, from one source for every backend.
 //!
 //! The general functions of `wide` branch on their data and cost two to four times as much. Each function here states its range, on
-//! which the tests measure its error (rows of `tests/tolerance.rs`), and none branches. The largest errors over all floats of the range
-//! are in a [table](crate::guide::platforms).
+//! which the tests measure its error (rows of `tests/tolerance.rs`), and none branches. The largest errors over all floats of the range,
+//! and over sets of pairs for functions of two numbers, are in a [table](crate::guide::platforms).
 
 pub use crate::hair::quadrature::GAUSS_LEGENDRE_32;
 

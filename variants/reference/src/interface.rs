@@ -126,6 +126,52 @@ pub trait Reference<T: Real>: Debug + Send + Sync {
         None
     }
 
+    /// Returns the relative errors that each lobe's value and density may have in the kernels, which compute in single precision. They
+    /// follow from the rounding of angles and the steepness of the lobe at `wi`. `None` unless the formulas have them, and next to the axis.
+    #[must_use]
+    fn lobe_errors(&self, wi: [T; 3]) -> Option<PerLobe<[T; 2]>> {
+        let _ = wi;
+        None
+    }
+
+    /// Returns the relative error that a channel of a lobe's colour may have in the kernels, of a model that computes its colours.
+    #[must_use]
+    fn color_error(&self, lobe: Lobe, channel: usize) -> T {
+        let _ = (lobe, channel);
+        T::default()
+    }
+
+    /// Returns the absolute errors that S and the density may have in the kernels: those of the lobes and of their colours, weighed as the
+    /// lobes are. A lobe's probability has the error of its colour.
+    ///
+    /// ```
+    /// use hairis::HairParams;
+    /// use hairis_reference::{HairReference, Reference, Shape};
+    /// let brown = HairParams::brown().desc().map(f64::from);
+    /// let hair = HairReference::prepare(&brown, Shape::Gaussian, [0.0, 1.0, 0.0]);
+    /// let at = [0.0, 0.0, 1.0];
+    /// let (value, pdf) = hair.error_bound(at).expect("off the axis");
+    /// assert!(value[0] < 1e-5 * hair.eval(at)[0] && pdf < 1e-5 * hair.pdf(at));
+    /// ```
+    #[must_use]
+    fn error_bound(&self, wi: [T; 3]) -> Option<([T; 3], T)> {
+        let errors = self.lobe_errors(wi)?;
+        let (lobes, shares) = (self.lobes(wi), self.probabilities());
+        let (mut value, mut pdf) = ([T::default(); 3], T::default());
+        for lobe in Lobe::ALL {
+            let (at, [of_value, of_pdf]) = (&lobes[lobe], errors[lobe]);
+            let (mut sum, mut wrong) = (T::default(), T::default());
+            for (c, value) in value.iter_mut().enumerate() {
+                let (color, error) = (at.color[c], self.color_error(lobe, c));
+                *value = *value + at.value * color * (of_value + error);
+                (sum, wrong) = (sum + color, wrong + color * error);
+            }
+            let of_share = if sum > T::default() { wrong / sum } else { sum };
+            pdf = pdf + at.pdf * shares[lobe] * (of_pdf + of_share);
+        }
+        Some((value, pdf))
+    }
+
     /// Returns the inclinations, in rad, at which the density jumps whatever the azimuth.
     #[must_use]
     fn jumps(&self) -> Vec<T> {

@@ -245,6 +245,20 @@ impl<T: Real> Reference<T> for KajiyaKayReference<T> {
         self.lobes_at(inclination(wi))
     }
 
+    /// Returns, for the highlight, the rounding of an angle times the steepness of `c^p`, `p tan (theta_i + theta_o)`, and the rounding of
+    /// its exponent, `p ln c`. The cosine `c` is rounded twice; the density has `1 / cos theta_i`.
+    fn lobe_errors(&self, wi: [T; 3]) -> Option<PerLobe<[T; 2]>> {
+        let (p, number) = (self.parameters.exponent, T::from_f64);
+        let [sin_i, cos_i] = inclination(wi);
+        let sum = sin_i.atan2(cos_i) + self.sin_theta_o.atan2(self.cos_theta_o);
+        let angle = p * (number(1.0) + number(2.0) * sum.tan().abs()) * number(1.2e-7);
+        let exponent = p * sum.cos().max(number(1e-30)).ln() * number(4e-7);
+        let mut errors = PerLobe([[T::default(); 2]; 4]);
+        errors[DIFFUSE] = [number(1e-6); 2];
+        errors[SPECULAR] = [number(3e-6) + angle - exponent; 2];
+        Some(errors)
+    }
+
     /// Returns the probability of each lobe; all are 0 if nothing scatters.
     #[inline]
     fn probabilities(&self) -> PerLobe<T> {

@@ -12,6 +12,7 @@
 mod albedo;
 mod cauchy;
 mod cut;
+mod errors;
 mod formulas;
 mod matched;
 mod sampler;
@@ -281,6 +282,12 @@ impl<T: Real> Reference<T> for HairReference<T> {
 
     fn cdf(&self, lobe: Lobe, theta_i: T, phi: T) -> Option<[T; 2]> {
         Some([self.cdf_theta(lobe, theta_i), self.cdf_phi(lobe, phi)])
+    }
+
+    /// Returns the rounding of angles times the steepness of the bells, further than 1e-3 rad from the axis. In the kernels each Gaussian
+    /// besides is 0 below `2^-114`.
+    fn lobe_errors(&self, wi: [T; 3]) -> Option<PerLobe<[T; 2]>> {
+        Some(errors::lobes(self, &self.angles(wi)?))
     }
 }
 

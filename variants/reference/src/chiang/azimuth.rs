@@ -12,6 +12,10 @@ pub(super) struct Logistic<T> {
 }
 
 impl<T: Real> Logistic<T> {
+    pub(super) fn scale(&self) -> T {
+        self.scale
+    }
+
     pub(super) fn new(scale: T) -> Self {
         let (one, two) = (T::from_f64(1.0), T::from_f64(2.0));
         let tail = (-T::PI / scale).exp();

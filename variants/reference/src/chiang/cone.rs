@@ -21,15 +21,25 @@ impl<T: Real> Cone<T> {
         (-self.sin).atan2(self.cos)
     }
 
+    /// Returns the exponent of M, `2 sin^2 ((theta_i + theta') / 2) / v`, and its width, the root of v.
+    pub(super) fn exponent(&self, sin_theta_i: T, cos_theta_i: T) -> [T; 2] {
+        let (x, y) = (cos_theta_i - self.cos, sin_theta_i + self.sin);
+        let two = T::from_f64(2.0);
+        [
+            (x * x + y * y) / (two * self.variance),
+            self.variance.sqrt(),
+        ]
+    }
+
     /// Evaluates M: `csch(1/v) / (2 v) exp(-sin theta_i sin theta' / v) I0(cos theta_i cos theta' / v)`, whose three exponents are
     /// added before they overflow (variants/ERRATA.md E8).
     ///
     /// The exponents add up to `(cos(theta_i + theta') - 1) / v`, half the squared distance of two points of a circle.
     pub(crate) fn density(&self, sin_theta_i: T, cos_theta_i: T) -> T {
         let (two, v) = (T::from_f64(2.0), self.variance);
-        let (x, y) = (cos_theta_i - self.cos, sin_theta_i + self.sin);
-        let exponent = -(x * x + y * y) / (two * v);
-        exponent.exp() * bessel_i0_scaled(cos_theta_i * self.cos / v) / (v * -(-two / v).exp_m1())
+        let [exponent, _] = self.exponent(sin_theta_i, cos_theta_i);
+        (-exponent).exp() * bessel_i0_scaled(cos_theta_i * self.cos / v)
+            / (v * -(-two / v).exp_m1())
     }
 
     /// Draws `1 - cos` of the angle from the cone's mantle, of density `exp(-delta / v)` on `[0, 2]`.
