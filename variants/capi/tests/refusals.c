@@ -99,7 +99,11 @@ static void setup(void) {
       hairis_params_set(&params, "beta_n", &third, 1, &error) || hairis_params_set(&params, "tilt", &tilt, 1, &error) ||
       hairis_params_set(&params, "melanin", brown, 2, &error) || hairis_material_init(&own, &params, HAIRIS_ENERGY_RAW, &error))
     want(0, "the same as chiang");
-  want(memcmp(&like, &own, sizeof own) == 0, "pbrt's parameters make another fibre");
+  hairis_bsdf of_like, of_own;
+  hairis_prepare(&of_like, &like, 0.6f, 0.8f, 0, 0.4f), hairis_prepare(&of_own, &own, 0.6f, 0.8f, 0, 0.4f);
+  const hairis_sample_result a = hairis_sample(&of_like, 0.3f, 0.6f, 0.2f), b = hairis_sample(&of_own, 0.3f, 0.6f, 0.2f);
+  want(a.lobe >= 0 && a.pdf == b.pdf && memcmp(a.value, b.value, sizeof a.value) == 0 && memcmp(a.wi, b.wi, sizeof a.wi) == 0,
+       "pbrt's parameters make another fibre");
   if (hairis_params_init(&params, "gaussian", "matched", "brown", &error)) want(0, "a preset");
 
   hairis_material *material = (hairis_material *)(void *)guarded;
