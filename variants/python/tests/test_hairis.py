@@ -217,17 +217,17 @@ def test_json_of_requests() -> None:
     ("like", "fields"),
     [
         ("cycles", {"roughness": 0.2, "coat": 0.5, "melanin": 0.4, "random": 0.7, "random_color": 0.5}),
-        ("materialx", {"tint_TT": [0.9, 0.8, 0.7], "cuticle_angle": 0.45}),
-        ("osl", {"lroughness": 0.25, "R_tint": [0.5, 0.6, 0.7]}),
+        ("materialx", {"tint_TT": [0.9, 0.8, 0.7], "cuticle_angle": 0.45, "color": [0.5, 0.3, 0.2]}),
+        ("osl", {"lroughness": 0.25, "troughness": 0.3, "aroughness": 0.4, "absorption": [0.1, 0.2, 0.3], "R_tint": [0.5, 0.6, 0.7]}),
         ("pbrt", {"beta_n": 0.4, "sigma_a": [0.1, 0.2, 0.4]}),
-        ("mitsuba", {}),
+        ("mitsuba", {"eumelanin": 1.3}),
     ],
 )
 def test_other_renderers_names(like: str, fields: dict[str, Any]) -> None:
     hair = hairis.Material("chiang", like=like, **fields)
     request = {"model": "chiang", "like": like, "params": fields}
     assert hair == hairis.Material.from_json(json.dumps(request)) == eval(repr(hair))
-    assert hair != hairis.Material("chiang", like="osl", lroughness=0.9)
+    assert hair != hairis.Material("chiang", like="pbrt", beta_m=0.9)
 
 
 def test_threads() -> None:
