@@ -27,7 +27,6 @@ PACKETS = {
 }
 MODELS = {
     "Chiang": "chiang",
-    "DEon": "d-eon",
     "KajiyaKay": "kajiya-kay",
     "Gaussian": "gaussian",
     "Cauchy": "cauchy",

@@ -24,7 +24,6 @@ MODELS = (
     ("published", r"Published<"),
     ("Chiang, by channel", r"Chiang<true>"),
     ("Chiang", r"Chiang"),
-    ("d'Eon", r"DEon"),
     ("Kajiya-Kay", r"KajiyaKay"),
 )
 

@@ -89,7 +89,7 @@ impl Material {
         text::json(self.id, &self.given())
     }
 
-    /// Name of the model: "gaussian", "cauchy", "kajiya-kay", "chiang" or "d-eon".
+    /// Name of the model: "gaussian", "cauchy", "kajiya-kay" or "chiang".
     #[getter]
     fn model(&self) -> &'static str {
         self.id.name()

@@ -3,8 +3,6 @@
 mod chiang;
 mod chiang_lobes;
 mod chiang_sampling;
-mod d_eon;
 mod errata;
 mod kajiya_kay;
-mod rtxcr;
 pub(crate) mod support;
