@@ -2,11 +2,11 @@
 
 use super::packet::{Exact, Packet};
 use super::{Quantity, Region};
-use core::f64::consts::TAU;
 use glam::Vec3;
 use hairis::simd::Level;
 use hairis::{Eval, Hit, Lobe, ParamError, Sample, Vec3x8};
 use hairis_instruments::direction::to_f64;
+use hairis_reference::agreement::{azimuth_between, cdf_distance, relative_excess};
 use hairis_reference::{Accuracy, Reference, accuracy};
 use hairis_variants::{AnyMaterial8, ModelId, Values};
 use wide::f32x8;
@@ -170,10 +170,15 @@ impl AtPlace<'_> {
         } else {
             [Pdf, Value]
         };
-        let slack = self.exact.slack;
+        let Exact {
+            value: exact,
+            pdf: density,
+            slack,
+        } = self.exact;
+        let pdf_slack = self.accuracy.pdf_slack(exact, density, slack);
         keep(
             pdf,
-            self.compare(pdf, [eval.pdf], self.pdf_slack(), |_, _, pdf| [pdf]),
+            self.compare(pdf, [eval.pdf], [pdf_slack], |_, _, pdf| [pdf]),
         );
         keep(
             value,
@@ -184,7 +189,7 @@ impl AtPlace<'_> {
             let over_pdf = wi[1].hypot(wi[2]) / pdf;
             value.map(|s| s * over_pdf)
         };
-        let slack = weight(to_f64(self.place.wi), slack, self.exact.pdf);
+        let slack = weight(to_f64(self.place.wi), slack, density);
         keep(
             SampleWeight,
             self.compare(SampleWeight, sample.weight, slack, weight),
@@ -206,7 +211,7 @@ impl AtPlace<'_> {
         let want = of(wi, self.exact.value, self.exact.pdf);
         let worst = |slack: [f64; N]| {
             (0..N)
-                .map(|c| relative(got[c], want[c], slack[c]))
+                .map(|c| relative_excess(got[c], want[c], slack[c]))
                 .fold(0.0, f64::max)
         };
         let error = worst(slack);
@@ -232,45 +237,14 @@ impl AtPlace<'_> {
     /// on a circle of length 1, because both ends of the cosines' cdf are the same direction.
     fn cdf(&self, lobe: Lobe) -> Option<LocatedError> {
         let (xi, wi) = (self.place.xi?, to_f64(self.place.wi));
-        let azimuth = |[_, v, w]: [f64; 3]| w.atan2(v);
-        let turn = azimuth(to_f64(self.place.wo)) - azimuth(wi);
-        let (theta_i, phi) = (
-            wi[0].atan2(wi[1].hypot(wi[2])),
-            turn - TAU * (turn / TAU).round(),
-        );
-        let cdf = self.truth.cdf(lobe, theta_i, phi)?;
-        let off = |k: usize| (cdf[k] - f64::from(xi[k + 1])).abs();
-        let error = off(0).max(off(1).min((1.0 - off(1)).abs()));
+        let phi = azimuth_between(to_f64(self.place.wo), wi);
+        let theta_i = wi[0].atan2(wi[1].hypot(wi[2]));
+        let error = cdf_distance(self.truth.cdf(lobe, theta_i, phi)?, xi);
         Some(LocatedError {
             error,
             unexplained: error > self.accuracy.cdf,
             at: self.place,
         })
-    }
-
-    /// Returns the absolute error of a density that the model allows by design, given the absolute error of S. A density proportional to S,
-    /// as the mean of RGB, vanishes with S.
-    fn pdf_slack(&self) -> [f64; 1] {
-        let Exact { value, pdf, slack } = self.exact;
-        if !self.accuracy.slack_in_pdf || slack == [0.0; 3] {
-            return [0.0];
-        }
-        let (slack, value): (f64, f64) = (slack.iter().sum(), value.iter().sum());
-        // If S is too small for a double, the whole density is allowed as error.
-        let share = if value > 0.0 { slack / value } else { 1.0 };
-        [share * pdf]
-    }
-}
-
-/// Returns the relative error in excess of an absolute error of `floor`. NaN counts as infinite.
-fn relative(got: f32, want: f64, floor: f64) -> f64 {
-    let excess = (f64::from(got) - want).abs() - floor;
-    if excess <= 0.0 {
-        0.0
-    } else if excess.is_finite() {
-        excess / want
-    } else {
-        f64::INFINITY
     }
 }
 

@@ -2,22 +2,19 @@
 
 use super::Region;
 use crate::subject::random;
-use core::f64::consts::{FRAC_PI_2, PI, TAU};
+use core::f64::consts::{PI, TAU};
 use glam::Vec3;
 use hairis::ParamError;
 use hairis_instruments::direction::{direction, to_f64, uniform_direction};
 use hairis_instruments::sequence::{Independent, stream_id};
+use hairis_reference::agreement::{self, azimuth_between, from_axis, is_bounded};
 use hairis_reference::{Reference, reference, slack};
 use hairis_variants::{AnyMaterial, ModelId, Values};
 
 /// Least and largest angle to the axis, rad, of a direction that counts as near the axis.
-pub(super) const AXIS: [f64; 2] = [1e-3, 1e-2];
+pub(super) const AXIS: [f64; 2] = [agreement::AXIS, 1e-2];
 /// Largest distance from pi, rad, of a `|phi|` that counts as near pi.
 pub(super) const BACK: f64 = 1e-2;
-/// Distance from pi/2, rad, within which a rounded `|phi|` may fall on either side of the cut of the glints' density.
-const CUT: f64 = 1e-6;
-/// Distance of `|phi|` from pi, rad, within which the reference has lost the digits of `cos(phi / 2)`: a double at pi is good to 4e-16.
-const SEAM: f64 = 1e-9;
 
 /// Function that prepares the formulas of given values, seen from `wo` at the offset `h`.
 pub type Formulas<'a> =
@@ -176,16 +173,12 @@ impl Region {
     /// Returns true if the pair of directions is in the region and the bounds apply to it: further than 1e-3 rad from the axis, off the cut
     /// of the glints, and not so close to pi that the oracle fails.
     pub(super) fn holds(self, wo: Vec3, wi: Vec3) -> bool {
-        let [u, v, w] = [wi.x, wi.y, wi.z].map(f64::from);
-        let from_axis = v.hypot(w).atan2(u.abs());
-        let turn = f64::from(wo.z).atan2(f64::from(wo.y)) - w.atan2(v);
-        let phi = (turn - TAU * (turn / TAU).round()).abs();
-        let sound = from_axis > AXIS[0] && (phi - FRAC_PI_2).abs() > CUT && PI - phi > SEAM;
-        sound
+        let (wo, wi) = (to_f64(wo), to_f64(wi));
+        is_bounded(wo, wi)
             && match self {
                 Self::General => true,
-                Self::Axis => from_axis < AXIS[1],
-                Self::Back => PI - phi < BACK,
+                Self::Axis => from_axis(wi) < AXIS[1],
+                Self::Back => PI - azimuth_between(wo, wi).abs() < BACK,
             }
     }
 }

@@ -21,6 +21,7 @@
     allow(unused_imports, reason = "other models are left out")
 )]
 
+pub mod agreement;
 mod chiang;
 pub mod errata;
 mod interface;

@@ -3,35 +3,24 @@
 use crate::energy::any_hair;
 use crate::point::{Coordinates, Point};
 use crate::{Arithmetic, Bound};
-use core::f64::consts::{FRAC_PI_2, TAU};
 use glam::Vec3;
 use hairis::simd::f32x8;
 use hairis::{Eval, Sample, Vec3x8};
 use hairis_conformance::published::support::{double, narrow};
+use hairis_reference::agreement::{
+    AXIS, azimuth_between, cdf_distance, from_axis, is_bounded, relative_excess,
+};
 use hairis_reference::{Reference, accuracy, slack};
 use hairis_variants::{ModelId, Values};
 
-/// Least angle to the axis, in rad, at which the bounds hold.
-const AXIS: f64 = 1e-3;
 /// Angle to the axis from which directions are drawn: rounding leaves it above [`AXIS`].
 pub(crate) const DRAWN: f64 = 1.001e-3;
-/// Distance from pi/2, rad, within which a rounded `|phi|` may fall on either side of the cut of the glints' density.
-const CUT: f64 = 1e-6;
-/// Distance from pi, rad, within which the formulas have no digits of `cos(phi / 2)`.
-const SEAM: f64 = 1e-9;
-
 /// Value and density below which bells come to their end.
 const LEAST: f64 = 1e-22;
 
 /// Returns true if the bounds apply to these directions.
 fn holds(wo: [f64; 3], wi: [f64; 3]) -> bool {
-    let turn = wo[2].atan2(wo[1]) - wi[2].atan2(wi[1]);
-    let phi = (turn - TAU * (turn / TAU).round()).abs();
-    let off = |v: [f64; 3]| v[1].hypot(v[2]).atan2(v[0].abs());
-    off(wi) > AXIS
-        && off(wo) > AXIS
-        && (phi - FRAC_PI_2).abs() > CUT
-        && core::f64::consts::PI - phi > SEAM
+    from_axis(wo) > AXIS && is_bounded(wo, wi)
 }
 
 /// Evaluates a direction on every path of an arithmetic.
@@ -56,18 +45,6 @@ pub(crate) fn samples(point: &Point, xi: [f32; 3], arithmetic: Arithmetic) -> Ve
     vec![shared.lane(0), each.sample8(&xi).lane(0)]
 }
 
-/// Returns the relative error in excess of an absolute one. NaN counts as infinite.
-fn relative(got: f32, want: f64, floor: f64) -> f64 {
-    let excess = (f64::from(got) - want).abs() - floor;
-    if excess <= 0.0 {
-        0.0
-    } else if excess.is_finite() {
-        excess / want
-    } else {
-        f64::INFINITY
-    }
-}
-
 /// Formulas at a direction.
 struct Truth {
     wi: [f64; 3],
@@ -84,21 +61,12 @@ impl Truth {
         let (value, pdf) = formulas.eval_pdf(wi);
         let slack = slack(point.model, &point.values, point.wo(), wi)
             .unwrap_or_else(|error| panic!("{error}"));
-        let [of_slack, of_value] = [slack, value].map(|rgb| rgb.iter().sum::<f64>());
-        // A density proportional to S, as the mean of RGB, vanishes with S.
-        let share = if !accuracy(point.model).slack_in_pdf || of_slack == 0.0 {
-            0.0
-        } else if of_value > 0.0 {
-            of_slack / of_value
-        } else {
-            1.0
-        };
         Self {
             wi,
             value,
             pdf,
             slack,
-            pdf_slack: share * pdf,
+            pdf_slack: accuracy(point.model).pdf_slack(value, pdf, slack),
         }
     }
 
@@ -107,7 +75,7 @@ impl Truth {
     }
 
     fn pdf_error(&self, got: f32) -> f64 {
-        relative(got, self.pdf, self.pdf_slack)
+        relative_excess(got, self.pdf, self.pdf_slack)
     }
 
     fn weight_error(&self, got: [f32; 3]) -> f64 {
@@ -116,7 +84,7 @@ impl Truth {
 
     fn error(&self, got: [f32; 3], by: f64) -> f64 {
         (0..3)
-            .map(|c| relative(got[c], by * self.value[c], by * self.slack[c]))
+            .map(|c| relative_excess(got[c], by * self.value[c], by * self.slack[c]))
             .fold(0.0, f64::max)
     }
 }
@@ -268,18 +236,13 @@ struct SampledBy<'a> {
 }
 
 impl SampledBy<'_> {
-    /// Returns the distance of the numbers from the distribution at the sample's direction, 0 for a model without one. Azimuths are on a
-    /// circle of length 1, because both ends of the cosines' distribution are one direction.
+    /// Returns the distance of the numbers from the distribution at the sample's direction, 0 for a model without one.
     fn cdf_error(&self, sample: &Sample) -> f64 {
-        let [u, v, w] = double(sample.wi);
-        let turn = self.wo[2].atan2(self.wo[1]) - w.atan2(v);
-        let phi = turn - TAU * (turn / TAU).round();
-        let cdf = self
-            .formulas
-            .cdf(sample.lobe, u.atan2(v.hypot(w)), phi)
-            .unwrap_or_default();
-        let off = |k: usize| (cdf[k] - f64::from(self.xi[k + 1])).abs();
-        off(0).max(off(1).min((1.0 - off(1)).abs()))
+        let wi = double(sample.wi);
+        let theta_i = wi[0].atan2(wi[1].hypot(wi[2]));
+        let phi = azimuth_between(self.wo, wi);
+        let cdf = self.formulas.cdf(sample.lobe, theta_i, phi);
+        cdf_distance(cdf.unwrap_or_default(), self.xi)
     }
 }
 
