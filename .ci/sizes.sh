@@ -1,5 +1,6 @@
 #!/bin/bash
-# Promise: opt-levels "s" and "z" add no calls to AVX2 and AVX-512 code (but those that .ci/sizes.py names), and "s" takes at most 1.5 times the time of 3.
+# Promise: opt-levels "s" and "z" add no calls to AVX2 and AVX-512 code, but those that .ci/sizes.py names, and "s" takes at most
+# 1.5 times the time of 3.
 # Reports bytes of code, calls and instructions per call of the entry points. The check has three models at "s" and "z", in which is
 # the code of the others; tables and times have all of them.
 #

@@ -199,6 +199,16 @@ pub unsafe fn values_of(
     }
 }
 
+/// Returns parameters of Chiang's fibre in the terms of another renderer, or `None` if the list has no such renderer.
+#[must_use]
+pub fn params_like(renderer: &str) -> Option<Params> {
+    let (place, like) = (0..)
+        .zip(Likeness::ALL)
+        .find(|(_, like)| like.name == renderer)?;
+    let index = Subject::index_like(ModelId::of::<Chiang>(), place);
+    Some(params_at(index, &like.defaults()))
+}
+
 /// Implements `hairis_params_like`: initialises parameters of Chiang's fibre in the terms of another renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_params_like(
@@ -208,16 +218,14 @@ pub unsafe extern "C" fn hairis_params_like(
 ) -> i32 {
     // SAFETY: the caller's promise.
     let (name, to) = unsafe { (string(renderer).unwrap_or_default(), to.as_mut()) };
-    let found = (0..).zip(Likeness::ALL).find(|(_, like)| like.name == name);
-    let (Some((place, like)), Some(to)) = (found, to) else {
+    let (Some(params), Some(to)) = (params_like(name), to) else {
         let names = List(Likeness::ALL.iter().map(|like| like.name));
         let message =
             &format_args!("renderer must be one of {names}, and to not NULL; got {name:?}");
         // SAFETY: the caller's promise.
         return unsafe { refuse(error, NAME, &Fault::of("renderer"), message) };
     };
-    let id = ModelId::of::<Chiang>();
-    *to = params_at(Subject::index_like(id, place), &like.defaults());
+    *to = params;
     OK
 }
 

@@ -41,39 +41,27 @@ pub(crate) fn params_like(
     renderer: &str,
     fields: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Params> {
-    if let ("chiang", Some(preset)) = (model, preset) {
-        return Err(PyValueError::new_err(format!(
-            "preset must be None where like is given, got {preset:?}"
-        )));
-    }
     if model != "chiang" {
         return Err(PyValueError::new_err(format!(
             "model must be \"chiang\" where like is given, got {model:?}"
         )));
     }
-    let Some(known) = Likeness::find(renderer).map(|like| like.fields) else {
+    if let Some(preset) = preset {
+        return Err(PyValueError::new_err(format!(
+            "preset must be None where like is given, got {preset:?}"
+        )));
+    }
+    let found = Likeness::find(renderer).zip(setup::params_like(renderer));
+    let Some((like, mut params)) = found else {
         let names: Vec<_> = Likeness::ALL.iter().map(|like| like.name).collect();
         let names = names.join(", ");
         return Err(PyValueError::new_err(format!(
             "like must be one of {names}, got {renderer:?}"
         )));
     };
-    let name = c_string("like", renderer)?;
-    let (mut params, mut error) = (NONE, no_error());
-    // SAFETY: the arguments are of this call.
-    let status =
-        unsafe { setup::hairis_params_like(&raw mut params, name.as_ptr(), &raw mut error) };
-    check(status, &error)?;
-    set_all(&mut params, known, None, fields)?;
+    set_all(&mut params, like.fields, None, fields)?;
     Ok(params)
 }
-
-/// Parameters that are not initialised.
-const NONE: Params = Params {
-    model: 0,
-    given: 0,
-    numbers: [0.0; NUMBERS],
-};
 
 /// Makes the parameters of a model or of its preset, with the values of `fields` in place of their own.
 pub(crate) fn params_of(
@@ -94,7 +82,12 @@ pub(crate) fn params_of(
     let preset = preset.map(|preset| c_string("preset", preset));
     let (model, preset) = (c_string("model", model)?, preset.transpose()?);
     let pointer = |text: &Option<CString>| text.as_deref().map_or(core::ptr::null(), CStr::as_ptr);
-    let (mut params, mut error) = (NONE, no_error());
+    let mut error = no_error();
+    let mut params = Params {
+        model: 0,
+        given: 0,
+        numbers: [0.0; NUMBERS],
+    };
     // SAFETY: the arguments are of this call.
     let status = unsafe {
         let names = (model.as_ptr(), pointer(&chosen), pointer(&preset));
