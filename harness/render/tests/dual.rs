@@ -5,6 +5,7 @@ use hairis_render::hair::Energy;
 use hairis_render::scene::{Met, Scene};
 use hairis_render::scenes::Name;
 use hairis_render::transport::{Integrator, Mis, Settings};
+use std::process::Command;
 
 /// Scene, model and sampler, and colour.
 type Case<'a> = (Name, [&'a str; 2], &'a str);
@@ -139,10 +140,16 @@ fn record_of_dual_scattering() {
             "/../../benches/records/dual.csv"
         );
         let machine = hairis_instruments::machine!();
+        let date = Command::new("date")
+            .arg("-I")
+            .output()
+            .expect("there is a clock");
         let text = format!(
-            "# CPU: any\n# {}\n# dual scattering of 64 samples over paths of 256: means on pixels of 96 x 96 that show hair; processor time of a sample\n\
+            "# CPU: {}\n# commit: {}\n# date: {}# dual scattering of 64 samples over paths of 256, on pixels of 96 x 96 that show hair\n\
              scene,model,colour,red,green,blue,once,by pixel,dual ms,paths ms\n{}\n",
-            machine.summary(),
+            machine.cpu,
+            &machine.commit[..8],
+            String::from_utf8_lossy(&date.stdout),
             rows.join("\n")
         );
         std::fs::write(path, text).expect("the record can be written");
