@@ -13,7 +13,7 @@ use core::f32::consts::LN_2;
 pub struct Crossed<L = f32> {
     /// Share of the light that has crossed no fibre.
     pub direct: L,
-    /// Share of the light that fibres have scattered forward, without the factor of [`DENSITY`](super::DENSITY).
+    /// Share of the light that fibres have scattered forward, without the factor of [`GAIN`](super::GAIN).
     pub scattered: [L; 3],
     /// Mean of the inclinations that the scattered light was shifted by, rad.
     pub shift: [L; 3],
