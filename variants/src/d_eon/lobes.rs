@@ -3,10 +3,10 @@
 use super::prepare::DEonPrepared;
 use crate::chiang::{Four, apart, four, same};
 use crate::cone::{SEAM, bessel};
-use core::f32::consts::{FRAC_1_PI, FRAC_PI_4};
+use core::f32::consts::{FRAC_1_PI, FRAC_PI_2};
 use hairis::PerLobe;
 use hairis::model::math::{
-    FRAC_PI_2_LOW, gaussian, gaussian_and_complement, half_atan2_parts, horner, polynomial,
+    FRAC_PI_2_LOW, atan_unit, gaussian, gaussian_and_complement, horner, polynomial,
 };
 use hairis::model::{Direction, LobeEval};
 use hairis::simd::{Broadcast, Lanes, Pair, Schedule, lanes3};
@@ -57,17 +57,30 @@ pub(super) fn lobes<L: Lanes, C: Broadcast<L>>(
     let inv_root_i = L::quotient(one, cos_i.sqrt());
     let inv_cos = inv_root_i * inv_root_i;
 
-    L::stage("half the azimuth: from the sum and the difference of both unit vectors");
-    let (v, w) = (wi.vector.y * inv_cos, wi.vector.z * inv_cos);
-    let [v_o, w_o] = [prepared.azimuth_o[0].lanes(), prepared.azimuth_o[1].lanes()];
-    let (sum, difference) = ([v + v_o, w + w_o], [v - v_o, w - w_o]);
-    let cos_sq = sum[0].mul_add(sum[0], sum[1] * sum[1]) * 0.25;
-    let sin_sq = difference[0].mul_add(difference[0], difference[1] * difference[1]) * 0.25;
-    let (cos, sin) = (cos_sq.sqrt().min(one), sin_sq.sqrt().min(one));
-    let [quarter, rest] = half_atan2_parts(sin, cos, one);
-    let phi = (quarter + rest) * 4.0;
-    // What the azimuth lacks of half a turn, without a difference where it is small.
-    let lacking = ((c(FRAC_PI_4) - quarter) + (c(0.5 * FRAC_PI_2_LOW) - rest)) * 4.0;
+    L::stage("half the azimuth: its tangent, or the inverse of that, whichever is smaller");
+    // R, TT and the diffuse lobe vanish with the cosine of half the azimuth, or at a sine near it: both take the digits of `wo` and of
+    // `wi` as they are, and no sum that cancels.
+    let [v_o, w_o, cos_o] = lanes3(&prepared.plane_o);
+    let dot = wi.vector.y.mul_add(v_o, wi.vector.z * w_o);
+    let cross = L::difference_of_products(wi.vector.z, v_o, wi.vector.y, w_o).abs();
+    let reach = (cos_i * cos_o).max(least);
+    let far = reach + dot.abs();
+    let tangent = L::quotient(cross, far);
+    let larger = L::quotient(far, reach + reach).sqrt().min(one);
+    let smaller = tangent * larger;
+    let is_front = zero.lt(dot);
+    let (cos, sin) = (
+        L::select(is_front, larger, smaller),
+        L::select(is_front, smaller, larger),
+    );
+    let (cos_sq, sin_sq) = (cos * cos, sin * sin);
+    let near = atan_unit(tangent);
+    let rest = c(FRAC_PI_2) - (near - FRAC_PI_2_LOW);
+    // The azimuth, and what it lacks of half a turn.
+    let (phi, lacking) = (
+        L::select(is_front, near, rest) * 2.0,
+        L::select(is_front, rest, near) * 2.0,
+    );
 
     L::stage("azimuthal density and attenuation of R");
     let squeeze = cos.max(c(LEAST_SQUEEZE));

@@ -38,8 +38,10 @@ lane_struct! {
 lane_struct! {
     /// Constants of a shading point of d'Eon's far field. Arrays of four hold R, TT, TRT and TRT again.
     pub struct DEonPrepared {
-        /// Components of the azimuth of `wo` along v and w.
-        pub(super) azimuth_o: [C; 2],
+        /// Part of `wo` in the normal plane, with the digits it was given: v and w, and its length.
+        pub(super) plane_o: [C; 3],
+        /// Reciprocal of that length.
+        pub(super) inv_plane_o: C,
         /// Cosine of `theta_o`.
         pub(super) cos_theta_o: C,
         /// Inverse of the projected index.
@@ -215,12 +217,21 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         ..
     } = Direction::normalized(wo);
     let k = k.min(one);
-    let off_axis = c(1e-18).lt(k);
-    let inv_k = L::quotient(L::select(off_axis, one, zero), L::select(off_axis, k, one));
-    let azimuth_o = [
-        L::select(off_axis, vector.y * inv_k, one).store(),
-        (vector.z * inv_k).store(),
+    // The digits of a `wo` of about unit length are kept as they are. On the axis the azimuth is 0.
+    let largest = wo.x.abs().max(wo.z.abs().max(wo.y.abs()));
+    let usual = L::and(c(0.25).lt(largest), largest.lt(c(4.0)));
+    let (y, z) = (
+        L::select_predictable(usual, wo.y, vector.y),
+        L::select_predictable(usual, wo.z, vector.z),
+    );
+    let plane = y.mul_add(y, z * z).sqrt();
+    let off_axis = c(1e-18).lt(plane);
+    let plane_o = [
+        L::select_predictable(off_axis, y, one),
+        L::keep(off_axis, z),
+        L::select_predictable(off_axis, plane, one),
     ];
+    let inv_plane = L::quotient(one, plane_o[2]);
 
     L::stage("refraction, and means of the reflectance over the width");
     let [eta, contrast, root_contrast] = lanes3(&m.eta);
@@ -301,7 +312,8 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         lobe += 1;
     }
     DEonPrepared {
-        azimuth_o,
+        plane_o: store3(plane_o),
+        inv_plane_o: inv_plane.store(),
         cos_theta_o: k.store(),
         q: q.store(),
         less: less.store(),

@@ -108,7 +108,11 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
     ];
     let sin_x = L::select(is_diffuse, sin_phi_d, sin_phi);
     let cos_x = L::select(is_diffuse, cos_phi_d, cos_phi);
-    let [v, w] = [prepared.azimuth_o[0].lanes(), prepared.azimuth_o[1].lanes()];
+    let inv_plane = prepared.inv_plane_o.lanes();
+    let (v, w) = (
+        prepared.plane_o[0].lanes() * inv_plane,
+        prepared.plane_o[1].lanes() * inv_plane,
+    );
     let phi = [v.mul_add(sin_x, w * cos_x), v.mul_sub(cos_x, w * sin_x)];
     Direction::from_sin_cos(theta, phi)
 }
