@@ -29,7 +29,8 @@ use hairis::{Hit, PerLobe};
 ///   [bound](self#sampling-and-its-bound).
 /// - Source: d'Eon 2022 as RTXCR has it; d'Eon et al. 2011 (`M_p`) and 2013 (its sampling); `ERRATA.md` of this package.
 /// - Accuracy: value, density and each lobe are accurate to `1e-5 + 5e-7 / w`, with `w` the width of the narrowest lobe, further than 1e-3 rad
-///   from the axis. The narrowest lobe is R at its edge, as wide as .14 roughnesses.
+///   from the axis. The narrowest lobe is R at its edge, as wide as .14 roughnesses. TT has fewer digits next to the azimuth at which it
+///   ends, and TRT next to inclinations of .525 and 1.1 rad, at which it jumps: `Reference::error_bound` of `hairis-reference` has both.
 ///
 /// ```
 /// use glam::Vec3;

@@ -1,6 +1,7 @@
 //! D'Eon's far field, formula by formula, in either precision.
 
 mod azimuth;
+mod errors;
 mod rtxcr;
 
 use crate::chiang::{Cone, wrap};
@@ -8,7 +9,7 @@ use crate::interface::{LobeAt, Reference, ReferenceSample};
 use crate::quadrature::integrate;
 use crate::real::Real;
 use crate::steps::{Fixed, GRAZING, choose, finish_sample, fixed, inclination, mix, sum_to_one};
-use azimuth::{Passage, ThreeGaussians, mean_reflectance, normal_reflectance, schlick};
+use azimuth::{Passage, ThreeGaussians, cylinder, mean_reflectance, normal_reflectance, schlick};
 use hairis::params::Pigments;
 use hairis::{Lobe, LobeMask, PerLobe};
 use hairis_variants::DEonDesc;
@@ -44,6 +45,8 @@ pub struct DEonReference<T> {
     roughness: T,
     phi_o: T,
     cos_theta_o: T,
+    /// Magnitude of `theta_o`, rad.
+    theta_o: T,
     f0: T,
     /// Sine and cosine of the cone of R, whose width depends on the azimuth.
     cone_r: [T; 2],
@@ -130,6 +133,7 @@ impl<T: Real> DEonReference<T> {
             roughness,
             phi_o,
             cos_theta_o: k,
+            theta_o: theta,
             f0,
             cone_r: cone(-2.0),
             cone_tt: Cone::new(variance_tt, sin_tt, cos_tt),
@@ -193,10 +197,7 @@ impl<T: Real> DEonReference<T> {
             Lobe::R => T::from_f64(0.25) * cos_half,
             Lobe::TT => self.passage.at(half)[0],
             Lobe::TRT => self.gaussians.density(wrap(phi)),
-            _ => {
-                let phi = wrap(phi).abs();
-                T::from_f64(0.125) * ((T::PI - phi) * phi.cos() + phi.sin())
-            }
+            _ => T::from_f64(0.125) * cylinder(T::PI - wrap(phi).abs()),
         }
     }
 
@@ -331,6 +332,22 @@ impl<T: Real> Reference<T> for DEonReference<T> {
             return PerLobe::default();
         }
         self.lobes_at(theta, wi[2].atan2(wi[1]) - self.phi_o)
+    }
+
+    /// Returns, for each lobe, the error of the arithmetic, and the rounding of angles times the steepness of M and N. N of TT vanishes at an
+    /// azimuth, next to which its error grows, and TRT jumps with `theta_o` where the pieces of its fit meet.
+    fn lobe_errors(&self, wi: [T; 3]) -> Option<PerLobe<[T; 2]>> {
+        Some(self.errors(wi))
+    }
+
+    /// Returns the error of a colour besides that of its lobe: the roundings of its reflectance and of its optical depth.
+    fn color_error(&self, lobe: Lobe, channel: usize) -> T {
+        let paths = match lobe {
+            Lobe::TT => 1.0,
+            Lobe::TRT => 1.875,
+            _ => 0.0,
+        };
+        T::from_f64(4e-6) + T::from_f64(6e-7 * paths) * self.depth[channel]
     }
 
     /// Returns the probability of each lobe; all are 0 if everything is absorbed.

@@ -421,11 +421,16 @@ impl Formulas for DEon {
         DEonReference::prepare(constants, wo)
     }
 
-    /// Returns the slack of the lobes, whose errors grow with their exponent: from `exp(-12)` of the peak down they are absolute.
+    /// Returns the slack of the lobes, whose errors grow with their exponent: from `exp(-12)` of the peak down they are absolute. So is the
+    /// error of TT next to its last azimuth, where a rounded azimuth does not determine it.
     fn slack(params: &DEonParams, wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
+        let desc = params.desc().map(f64::from);
         let [_, v, w] = wi;
         let k = wo[1].hypot(wo[2]).max(1e-3);
-        let peak = 0.2 / f64::from(params.desc().roughness) / k;
-        [Self::ACCURACY.value * (-12.0_f64).exp() * peak / v.hypot(w); 3]
+        let peak = 0.2 / desc.roughness / k;
+        let tail = Self::ACCURACY.value * (-12.0_f64).exp() * peak / v.hypot(w);
+        DEonReference::prepare(&desc, wo)
+            .slack(wi)
+            .map(|edge| edge + tail)
     }
 }

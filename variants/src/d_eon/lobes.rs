@@ -17,7 +17,7 @@ pub(super) const LEAST_SQUEEZE: f32 = 0.1;
 /// not on another.
 const LEAST: f32 = 1e-30;
 /// Least cosine in the attenuation of TT, for the same reason.
-const LEAST_PASSED: f32 = 1e-3;
+const LEAST_PASSED: f32 = 1e-6;
 /// Coefficients in powers of the square of `x` of `(sin x - x cos x) / x^3`.
 const CYLINDER: [f32; 9] = [
     0.333_333_333,
@@ -65,7 +65,8 @@ pub(super) fn lobes<L: Lanes, C: Broadcast<L>>(
     let cross = L::difference_of_products(wi.vector.z, v_o, wi.vector.y, w_o).abs();
     let reach = (cos_i * cos_o).max(least);
     let far = reach + dot.abs();
-    let tangent = L::quotient(cross, far);
+    // A minimum is not NaN either, where `wi` is no direction.
+    let tangent = L::quotient(cross, far).min(one);
     let larger = L::quotient(far, reach + reach).sqrt().min(one);
     let smaller = tangent * larger;
     let is_front = zero.lt(dot);

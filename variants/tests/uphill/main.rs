@@ -111,13 +111,10 @@ impl Bound {
     }
 }
 
-/// Returns the bounds of every model and sampler, but of samplers that differ from one of these by constants. D'Eon's far field is not
-/// searched: its stated error is one of the peak, not of the value, from a lobe's exponent of 12 on.
+/// Returns the bounds of every model and sampler, but of samplers that differ from one of these by constants.
 fn bounds() -> Vec<Bound> {
     let words = ["published", "matched", "mean"];
-    let is_one = |model: &&ModelId| {
-        **model != ModelId::DEon && model.choice().is_none_or(|(_, word)| words.contains(&word))
-    };
+    let is_one = |model: &&ModelId| model.choice().is_none_or(|(_, word)| words.contains(&word));
     let of = |model: &ModelId| [accuracy::bounds(*model), energy::bounds(*model)].concat();
     ModelId::ALL.iter().filter(is_one).flat_map(of).collect()
 }

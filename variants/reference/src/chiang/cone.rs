@@ -22,7 +22,7 @@ impl<T: Real> Cone<T> {
     }
 
     /// Returns the exponent of M, `2 sin^2 ((theta_i + theta') / 2) / v`, and its width, the root of v.
-    pub(super) fn exponent(&self, sin_theta_i: T, cos_theta_i: T) -> [T; 2] {
+    pub(crate) fn exponent(&self, sin_theta_i: T, cos_theta_i: T) -> [T; 2] {
         let (x, y) = (cos_theta_i - self.cos, sin_theta_i + self.sin);
         let two = T::from_f64(2.0);
         [

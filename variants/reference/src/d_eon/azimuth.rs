@@ -79,6 +79,26 @@ pub(super) fn mean_reflectance<T: Real>(f0: T, k: T) -> [T; 3] {
     [mean, one - two * mean + square, mean - square]
 }
 
+/// Computes `sin x - x cos x`, of which a Lambertian cylinder's azimuth is an eighth at `x` less than half a turn. Small numbers take the
+/// series, because the difference cancels.
+pub(super) fn cylinder<T: Real>(x: T) -> T {
+    const SERIES: [f64; 6] = [
+        1.0 / 3.0,
+        -1.0 / 30.0,
+        1.0 / 840.0,
+        -1.0 / 45_360.0,
+        1.0 / 3_991_680.0,
+        -1.0 / 518_918_400.0,
+    ];
+    if x < T::from_f64(0.25) {
+        let square = x * x;
+        let terms = SERIES.iter().rev();
+        let sum = terms.fold(T::default(), |sum, c| sum * square + T::from_f64(*c));
+        return square * x * sum;
+    }
+    x.sin() - x * x.cos()
+}
+
 /// TT at one inclination: `q = 1 / eta'`, of the projected index `eta'`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Passage<T> {
@@ -115,6 +135,11 @@ impl<T: Real> Passage<T> {
             outer / chord,
             inner / chord,
         ]
+    }
+
+    /// Returns how far the sine of half an azimuth is beyond that of the last azimuth; at least next to nothing.
+    pub(super) fn beyond(&self, sin_half: T) -> T {
+        (sin_half - self.q).max(T::from_f64(1e-30))
     }
 
     /// Returns `phi` of the ray that enters at `h`.
@@ -175,6 +200,44 @@ impl<T: Real> Fit<T> {
             }
         }
     }
+
+    /// Returns the fit with each of its terms off by the rounding of single precision, at the magnitude of an angle: that of the largest
+    /// number of the polynomial.
+    pub(super) fn rounded(&self, angle: T) -> [Self; 5] {
+        let (c, fit) = (T::from_f64, *self);
+        let (is_low, is_middle) = (angle.abs() < c(0.525), angle.abs() < c(1.1));
+        let of = |low: f64, middle: f64, high: f64| {
+            c(if is_low {
+                low
+            } else if is_middle {
+                middle
+            } else {
+                high
+            })
+        };
+        [
+            Self {
+                place: fit.place + of(1.2e-7, 1.2e-7, 0.0),
+                ..fit
+            },
+            Self {
+                outer: fit.outer * (c(1.0) + of(2e-6, 0.0, 0.0)) + of(0.0, 2e-10, 0.0),
+                ..fit
+            },
+            Self {
+                centre: fit.centre * (c(1.0) + of(2e-6, 0.0, 5e-7)) + of(0.0, 2e-10, 0.0),
+                ..fit
+            },
+            Self {
+                outer_variance: fit.outer_variance + of(2e-9, 1e-8, 0.0),
+                ..fit
+            },
+            Self {
+                centre_variance: fit.centre_variance + of(1e-8, 1e-7, 5e-7),
+                ..fit
+            },
+        ]
+    }
 }
 
 /// Azimuth of TRT: Gaussians at `-p`, `0` and `p`, each cut to one turn.
@@ -215,7 +278,12 @@ impl<T: Real> Gaussian<T> {
 
 impl<T: Real> ThreeGaussians<T> {
     pub(super) fn new(roughness: T, theta: T) -> Self {
-        let (fit, two) = (Fit::new(theta), T::from_f64(2.0));
+        Self::of(&Fit::new(theta), roughness)
+    }
+
+    /// Makes the Gaussians of a fit.
+    pub(super) fn of(fit: &Fit<T>, roughness: T) -> Self {
+        let two = T::from_f64(2.0);
         let width = |variance: T| roughness / T::from_f64(0.06) * variance.sqrt();
         // Next to 30 degrees the fit has a negative weight; a least one above 0 also keeps the digits of the tail.
         let (outer, centre) = (two * fit.outer, fit.centre.max(T::from_f64(LEAST_CENTRE)));
