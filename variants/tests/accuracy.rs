@@ -333,6 +333,7 @@ fn kajiya_and_kay_s_fibre_is_as_accurate_as_its_exponent_allows() {
 fn d_eon_s_far_field_is_as_accurate_as_its_widths_allow() {
     let mut draws = Draws(0xde0);
     let mut errors = Errors::default();
+    let mut seen = 0;
     for case in 0..CASES {
         let share = |x: f64| narrow(x * x);
         let desc = DEonDesc {
@@ -361,10 +362,12 @@ fn d_eon_s_far_field_is_as_accurate_as_its_widths_allow() {
         // Next to half a turn from wo, where R and the diffuse lobe vanish.
         let turn = draws.sign() * (PI - draws.scale(1e-8, 1e-2));
         wi[7] = direction(inclination(&mut draws), wo[2].atan2(wo[1]) + turn);
-        let bounds_at = |d: [f64; 3]| book.lobe_errors(d).unwrap().0.map(|[value, _]| value);
+        let bounds_at = |d: [f64; 3]| Some(book.lobe_errors(d)?.0.map(|[value, _]| value));
         for (k, evals) in evals(&bsdf, &wi).into_iter().enumerate() {
             let d = double(wi[k]);
-            let bounds = bounds_at(d);
+            // Where rounding decides on which side of TT's last azimuth a direction is, there is no bound.
+            let Some(bounds) = bounds_at(d) else { continue };
+            seen += 1;
             let at = || format!("{:?} {desc:?} {hit:?}", wi[k]);
             errors.see_eval(
                 (bsdf.lobes(wi[k]), evals),
@@ -374,10 +377,12 @@ fn d_eon_s_far_field_is_as_accurate_as_its_widths_allow() {
             );
             if let Some(sample) = &samples[k] {
                 let d = double(sample.wi);
-                let of = (bounds_at(d), book.probabilities());
+                let Some(bounds) = bounds_at(d) else { continue };
+                let of = (bounds, book.probabilities());
                 errors.see_weight(sample, (book.lobes(d), book.eval_pdf(d)), of, &at);
             }
         }
     }
+    assert!(seen > 79_000, "directions with a bound: {seen}");
     errors.check();
 }

@@ -337,7 +337,7 @@ impl<T: Real> Reference<T> for DEonReference<T> {
     /// Returns, for each lobe, the error of the arithmetic, and the rounding of angles times the steepness of M and N. N of TT vanishes at an
     /// azimuth, next to which its error grows, and TRT jumps with `theta_o` where the pieces of its fit meet.
     fn lobe_errors(&self, wi: [T; 3]) -> Option<PerLobe<[T; 2]>> {
-        Some(self.errors(wi))
+        self.errors(wi)
     }
 
     /// Returns the error of a colour besides that of its lobe: the roundings of its reflectance and of its optical depth.

@@ -120,26 +120,29 @@ impl<T: Real> Passage<T> {
 
     /// Computes `N = |dh / dphi| / 2`, and the cosines of `gamma_i` and `gamma_t`, at an azimuth whose half has this sine (its
     /// magnitude) and this cosine. Beyond the last azimuth all are 0.
-    pub(super) fn at(&self, [sin_half, cos_half]: [T; 2]) -> [T; 3] {
+    pub(super) fn at(&self, half: [T; 2]) -> [T; 3] {
+        let [beyond, steepness] = self.beyond(half);
+        if beyond <= T::default() {
+            return [T::default(); 3];
+        }
+        let [inner, chord] = self.inner_and_chord(half);
+        [beyond * steepness, beyond / chord, inner / chord]
+    }
+
+    /// Returns how far the sine of half an azimuth is beyond that of the last azimuth, negative in front of it, and N over that.
+    pub(super) fn beyond(&self, half @ [sin_half, _]: [T; 2]) -> [T; 2] {
+        let [inner, chord] = self.inner_and_chord(half);
+        let steepness = inner / (T::from_f64(4.0) * (chord * chord * chord));
+        [sin_half - self.q, steepness]
+    }
+
+    /// Returns `1 - q sin(phi / 2)`, and the third side of the triangle of the sides 1 and `q`.
+    fn inner_and_chord(&self, [sin_half, cos_half]: [T; 2]) -> [T; 2] {
         let (one, two, q) = (T::from_f64(1.0), T::from_f64(2.0), self.q);
         // gamma_i - gamma_t = (pi - phi) / 2, whose sine and cosine are the cosine and the sine of phi / 2.
         let rest = cos_half * cos_half / (one + sin_half);
-        let [outer, inner] = [sin_half - q, self.less + q * rest];
-        if outer <= T::default() {
-            return [T::default(); 3];
-        }
         let chord = (self.less * self.less + two * q * rest).sqrt();
-        let cubed = chord * chord * chord;
-        [
-            outer * inner / (T::from_f64(4.0) * cubed),
-            outer / chord,
-            inner / chord,
-        ]
-    }
-
-    /// Returns how far the sine of half an azimuth is beyond that of the last azimuth; at least next to nothing.
-    pub(super) fn beyond(&self, sin_half: T) -> T {
-        (sin_half - self.q).max(T::from_f64(1e-30))
+        [self.less + q * rest, chord]
     }
 
     /// Returns `phi` of the ray that enters at `h`.

@@ -16,16 +16,23 @@ const ALONG: f64 = 1.2e-6;
 const AZIMUTH: f64 = 4e-7;
 /// Error of `theta_o` in the fit of TRT, rad.
 const INCLINATION: f64 = 3e-7;
-/// Error of the sine of half the azimuth, and of `q`.
-const EDGE: f64 = 3e-7;
+/// Error of the sine of half the azimuth and of `q` together, relative: ten roundings.
+const EDGE: f64 = 6e-7;
 
 impl<T: Real> DEonReference<T> {
-    /// Returns the relative errors of each lobe's value and density.
-    pub(super) fn errors(&self, wi: [T; 3]) -> PerLobe<[T; 2]> {
+    /// Returns the relative errors of each lobe's value and density; none where rounding decides whether the azimuth is one of TT.
+    pub(super) fn errors(&self, wi: [T; 3]) -> Option<PerLobe<[T; 2]>> {
         let number = T::from_f64;
         let [sin, cos] = inclination(wi);
         let phi = wi[2].atan2(wi[1]) - self.phi_o;
-        PerLobe(Lobe::ALL.map(|lobe| {
+        let half @ [sin_half, _] = self.half(phi);
+        let (beyond, off) = (self.passage.beyond(half)[0], number(EDGE) * sin_half);
+        if beyond.abs() < off + off {
+            return None;
+        }
+        // N of TT vanishes with a difference of two sines, and A with the square of it.
+        let edge = off / beyond.max(off);
+        Some(PerLobe(Lobe::ALL.map(|lobe| {
             let plain = number(ARITHMETIC);
             if lobe == DIFFUSE {
                 return [plain; 2];
@@ -36,37 +43,29 @@ impl<T: Real> DEonReference<T> {
             let [value, pdf] = match lobe {
                 // The exponent has the square of the azimuth's cosine.
                 Lobe::R => [number(4e-7) * exponent; 2],
-                // A vanishes with the square of what N vanishes with.
-                Lobe::TT => {
-                    let edge = self.error_at_edge(phi);
-                    [number(3.0) * edge, edge]
-                }
+                Lobe::TT => [number(3.0) * edge, edge],
                 _ => [self.error_trt(wrap(phi)); 2],
             };
             [along + value, along + pdf]
-        }))
+        })))
     }
 
-    /// Returns the relative error of N of TT, which vanishes with a difference of two sines.
-    fn error_at_edge(&self, phi: T) -> T {
-        let sin_half = self.half(phi)[0];
-        T::from_f64(EDGE) * sin_half / self.passage.beyond(sin_half)
-    }
-
-    /// Returns the absolute errors of S that TT has next to its last azimuth, and the errors of the density there to the scale of S.
+    /// Returns the absolute errors of S that TT has next to its last azimuth, with those of the density in the same shares of S.
     pub(crate) fn slack(&self, wi: [T; 3]) -> [T; 3] {
         let (lobes, (value, pdf)) = (self.lobes(wi), self.eval_pdf(wi));
+        let [sin, cos] = inclination(wi);
+        let half @ [sin_half, _] = self.half(wi[2].atan2(wi[1]) - self.phi_o);
+        let [beyond, steepness] = self.passage.beyond(half);
+        let off = T::from_f64(EDGE) * sin_half;
+        let of_n = self.cone_tt.density(sin, cos) * steepness * off;
+        let share = if pdf > T::default() {
+            self.probabilities[Lobe::TT] * of_n / pdf
+        } else {
+            T::default()
+        };
+        let edge = T::from_f64(3.0) * off / beyond.max(off);
         let at = &lobes[Lobe::TT];
-        let edge = self.error_at_edge(wi[2].atan2(wi[1]) - self.phi_o);
-        let of_pdf = self.probabilities[Lobe::TT] * at.pdf * edge;
-        [0, 1, 2].map(|c| {
-            let of_value = T::from_f64(3.0) * at.value * at.color[c] * edge;
-            of_value.max(if pdf > T::default() {
-                value[c] * (of_pdf / pdf)
-            } else {
-                T::default()
-            })
-        })
+        [0, 1, 2].map(|c| at.value * at.color[c] * edge + value[c] * share)
     }
 
     /// Returns the relative error of the azimuth of TRT: how far it moves as its angles do, over a break of the fit as well, and as the
