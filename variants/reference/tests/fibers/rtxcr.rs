@@ -212,7 +212,7 @@ fn the_record_states_the_distance_from_rtxcr() {
             "ours is unbiased: {off}"
         );
         let row = format!(
-            "{degrees},{narrow:.4},{wide:.4},{ours_clear:.4},{returned:.4},{:.4},{ours_returned:.4},{:.3},{:.3},{:.2},{:.2},{bound:.2}\n",
+            "{degrees},{narrow:.4},{wide:.4},{ours_clear:.4},{returned:.4},{:.4},{ours_returned:.4},{:.4},{:.4},{:.4},{:.4},{bound:.4}\n",
             estimate[0], estimate[1], ours_estimate[1], estimate[2], ours_estimate[2],
         );
         rows.push_str(&row);
