@@ -30,6 +30,7 @@ def refusals() -> list[tuple[type[Exception], str, Call]]:
     lobes, energies = "lobes must be some of r, tt, trt, glint", "energy must be one of raw, conserving, scaled"
     samplers = ", ".join(hairis.models()["cauchy"]["choices"])
     models = "model must be one of gaussian, cauchy, kajiya-kay, chiang, d-eon"
+    pbrt = "beta_m, beta_n, alpha, eta, sigma_a, eumelanin, reflectance, pheomelanin"
     fields = "alpha, beta, gamma_tt, gamma_g, phi_g, i_r, i_tt, i_trt, i_g"
 
     def column(name: str, shape: str, got: str) -> str:
@@ -52,9 +53,9 @@ def refusals() -> list[tuple[type[Exception], str, Call]]:
         (ValueError, 'model must be "chiang" where like is given, got "gaussian"', lambda: make(like="cycles")),
         (ValueError, 'preset must be None where like is given, got "blond"', lambda: make("chiang", "blond", like="cycles")),
         (TypeError, "like must be a word, got <class 'int'>", lambda: make("chiang", like=1)),
-        (ValueError, "field must be one of beta_m, beta_n, alpha,", lambda: make("chiang", like="pbrt", beta=1)),
+        (ValueError, f'field must be one of {pbrt}, got "beta"', lambda: make("chiang", like="pbrt", beta=1)),
         (ValueError, "melanin and color exclude each other; give one", lambda: make("chiang", like="cycles", melanin=1, color=(1, 1, 1))),
-        (ValueError, "roughness must be in [1e-3, 1], got 2", lambda: make("chiang", like="cycles", roughness=2)),
+        (ValueError, "roughness must be in [0.001, 1], got 2", lambda: make("chiang", like="cycles", roughness=2)),
         (ValueError, f'{energies}, got "most"', lambda: make(energy="most")),
         (TypeError, "energy must be a word, got <class 'NoneType'>", lambda: make(energy=None)),
         (TypeError, "energy must be a word, got <class 'int'>", lambda: make.from_json(hair.to_json(), energy=0)),
