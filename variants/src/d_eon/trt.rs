@@ -48,7 +48,7 @@ fn quadratic<L: Lanes>(t: L, a: f32, b: f32, d: f32) -> L {
 #[inline(always)]
 fn fit<L: Lanes>(theta: L, [sin, cos]: [L; 2]) -> [L; 5] {
     let (c, zero, one) = (L::splat, L::splat(0.0), L::splat(1.0));
-    let [first, second] = ENDS.map(L::splat);
+    let (first, second) = (c(ENDS[0]), c(ENDS[1]));
 
     L::stage("fit of TRT below 30 degrees");
     let t = theta.min(first);
@@ -56,7 +56,7 @@ fn fit<L: Lanes>(theta: L, [sin, cos]: [L; 2]) -> [L; 5] {
     let half = sin_half_turn(t * (0.5 * 5.41149));
     let inner = sin_half_turn(t * (0.5 * 2.121));
     let (sin_inner, cos_inner) = sin_cos_half_turn(one - (inner + inner) * inner);
-    let low = [
+    let mut fitted = [
         cos - 0.733,
         power(t, 15.7265) + ((c(0.103_125) - t) * t).mul_add(c(0.000_111_282), c(0.000_239_39)),
         (t - power(t * 1.80972, 16.7669)).mul_add(tan, c(0.991_977)) * 0.000_322_755,
@@ -83,10 +83,9 @@ fn fit<L: Lanes>(theta: L, [sin, cos]: [L; 2]) -> [L; 5] {
         c(-0.7437).mul_add(t, c(2.73)).mul_add(t, c(-1.86)),
     ];
     let (is_low, is_middle) = (theta.lt(first), theta.lt(second));
-    let mut fitted = low;
     let mut i = 0;
     while i < 5 {
-        fitted[i] = L::select(is_low, low[i], L::select(is_middle, middle[i], high[i]));
+        fitted[i] = L::select(is_low, fitted[i], L::select(is_middle, middle[i], high[i]));
         i += 1;
     }
     fitted
