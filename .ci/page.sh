@@ -32,5 +32,5 @@ browser
 cargo clippy -q --locked --manifest-path harness/page/Cargo.toml --target-dir "$target/page-build" -- -D warnings
 hairis=${HAIRIS:-$(.ci/release.sh)/hairis}
 HAIRIS=$hairis "${bootstrap[@]}" harness/page/build.sh "${arguments[@]}"
-cp harness/page/tests/*.mjs "$tools/page"
+cp harness/page/tests/*.mjs variants/shaders/examples/three/tests/*.mjs "$tools/page"
 node "$tools/page/page.mjs" "$target/page" "$hairis" "$chromium" "$@"

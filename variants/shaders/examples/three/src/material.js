@@ -1,0 +1,173 @@
+/// Node material of hair for WebGPURenderer: generated WGSL of a model, one directional light, and light from all around.
+import { Matrix4, NodeMaterial, SphericalHarmonics3, Vector3, Vector4 } from 'three/webgpu';
+import {
+  attribute, cameraPosition, cameraProjectionMatrix, cross, float, mix, modelViewMatrix, modelWorldMatrix, modelWorldMatrixInverse,
+  normalize, positionGeometry, positionWorld, screenSize, texture3D, uniform, uniformArray, varying, vec3, vec4, wgsl, wgslFn,
+} from 'three/tsl';
+import { multiple } from './multiple.js';
+import { INCLINATIONS, MOMENTS, OFFSETS, scattering } from './scattering.js';
+import { hitFunction } from './source.js';
+
+/// Hair of one model. `Hairis.material` makes it, after it has loaded the source of the model.
+///
+/// - `light`: a DirectionalLight of the scene, or null. Its intensity is irradiance across the light, as three.js has it.
+/// - `environment`: SphericalHarmonics3 of radiance, as LightProbeGenerator computes from a cube map, or null.
+/// - `crossings`: the `Crossings` of the strands, or null for hair that is nowhere in shadow.
+/// - `lines`: true for `LineSegments`, false for ribbons.
+/// - `leastWidth`: of a ribbon in pixels. Thinner ribbons are widened to it, and stay opaque.
+///
+/// Materials conserve energy: one whose albedo exceeds 1 for a viewer is scaled as a whole.
+export class HairMaterial extends NodeMaterial {
+  constructor(hairis, source, material, { light = null, environment = null, crossings = null, lines = false, leastWidth = 1 } = {}) {
+    super();
+    this.hairis = hairis;
+    this.light = light;
+    this.environment = environment;
+    const hit = hitFunction(source),
+      model = hairis.kernel.model(material.model);
+    this.constants = uniformArray(Array.from({ length: Math.ceil(hit.places.length / 4) }, () => new Vector4()), 'vec4');
+    this.moments = uniformArray(Array.from({ length: INCLINATIONS * MOMENTS }, () => new Vector4()), 'vec4');
+    this.forward = uniform(new Vector3());
+    this.scale = uniform(1);
+    this.set(material);
+
+    const tangent = lines ? attribute('tangent', 'vec3') : mix(attribute('startTangent', 'vec3'), attribute('stopTangent', 'vec3'), positionGeometry.x),
+      along = normalize(modelWorldMatrix.mul(vec4(varying(tangent), 0)).xyz),
+      view = normalize(cameraPosition.sub(positionWorld));
+    const { across, pixels } = lines ? { across: float(0), pixels: float(0) } : this.widen(tangent, leastWidth),
+      direct = wgslFn(directSource(hit, model.near_field), [wgsl(source)]);
+    const toLight = uniform(new Vector3(0, 1, 0)).onObjectUpdate(({ object }) => this.aim(object, crossings)),
+      irradiance = uniform(new Vector3()).onObjectUpdate(() => {
+        const { light } = this;
+        return light ? new Vector3(light.color.r, light.color.g, light.color.b).multiplyScalar(light.intensity) : new Vector3();
+      });
+    const args = Object.fromEntries(this.constants.array.map((_, i) => [`c${i}`, this.constants.element(i)]));
+    const lit = direct({ ...args, view, along, across, pixels, toLight }).mul(irradiance);
+    const quadratics = [0, 1, 2].map(c => uniform(new Matrix4()).onObjectUpdate(() => quadratic(this.environment, c)));
+    const places = [0, 1].flatMap(side => Array.from({ length: MOMENTS }, (_, i) => this.moments.element(inclinationOf(view, along, side).mul(MOMENTS).add(i))));
+    const around = environmentFunction(...places, ...quadratics, view, along);
+
+    const dim = wgslFn(multiple);
+    let [behind, within] = [vec3(1), vec3(1)];
+    if (crossings) {
+      const local = modelWorldMatrixInverse.mul(vec4(positionWorld, 1)).xyz,
+        counts = texture3D(crossings.texture, local.sub(uniform(crossings.low)).div(crossings.side));
+      behind = dim(this.forward, counts.x).xyz;
+      within = dim(this.forward, counts.y).xyz;
+    }
+    this.colorNode = lit.mul(behind).add(around.mul(within)).mul(this.scale);
+  }
+
+  /// Sets the parameters: `{ model, word, values }` as the module describes them, with fields by the names of `hairis eval`. The model must
+  /// be that of the material. Throws an error that names a value which is refused.
+  set(material) {
+    const { kernel } = this.hairis,
+      refusal = kernel.setMaterial(0, material);
+    if (refusal) throw new Error(refusal);
+    const { moments, forward, scale } = scattering(kernel, material);
+    const numbers = kernel.work[0].slice(0, kernel.calls.constants(0));
+    this.constants.array.forEach((four, i) => four.fromArray([0, 1, 2, 3].map(j => numbers[4 * i + j] ?? 0)));
+    this.moments.array.forEach((four, i) => four.fromArray(moments, 4 * i));
+    this.forward.value.fromArray(forward);
+    this.scale.value = scale;
+  }
+
+  /// Turns quads into ribbons that face the camera. Returns the place across the ribbon, from -1 to 1 along u x v, and its width in pixels.
+  widen(tangent, leastWidth) {
+    const node = mix(attribute('start', 'vec4'), attribute('stop', 'vec4'), positionGeometry.x),
+      camera = modelWorldMatrixInverse.mul(vec4(cameraPosition, 1)).xyz,
+      side = normalize(cross(tangent, camera.sub(node.xyz))),
+      depth = modelViewMatrix.mul(vec4(node.xyz, 1)).z.negate(),
+      pixel = depth.mul(2).div(cameraProjectionMatrix.element(1).y.mul(screenSize.y)).abs(),
+      radius = node.w.max(pixel.mul(leastWidth / 2));
+    this.positionNode = node.xyz.add(side.mul(positionGeometry.y.mul(radius)));
+    return { across: varying(positionGeometry.y), pixels: varying(radius.div(pixel).mul(2)) };
+  }
+
+  /// The direction towards the light, for which it brings the crossings up to date.
+  aim(object, crossings) {
+    const { light } = this,
+      direction = new Vector3(0, 1, 0);
+    if (!light) return direction;
+    direction.setFromMatrixPosition(light.matrixWorld).sub(new Vector3().setFromMatrixPosition(light.target.matrixWorld)).normalize();
+    crossings?.update(direction.clone().transformDirection(new Matrix4().copy(object.matrixWorld).invert()));
+    return direction;
+  }
+}
+
+/// Row of the table at or after the inclination of the viewer.
+function inclinationOf(view, along, side) {
+  return placeFunction(view, along).floor().min(INCLINATIONS - 2).add(side).toInt();
+}
+
+const placeFunction = wgslFn(`
+fn hairis_place(view: vec3f, along: vec3f) -> f32 {
+  return (asin(clamp(dot(view, along), -1.0, 1.0)) / ${Math.PI} + 0.5) * ${INCLINATIONS - 1}.0;
+}`);
+
+/// Radiance towards the viewer under light that is quadratic in its direction: x Q x with x = (direction, 1), by channel.
+const moments = side => Array.from({ length: MOMENTS }, (_, i) => `${side}${i}: vec4f`).join(', ');
+const environmentFunction = wgslFn(`
+fn hairis_around(${moments('a')}, ${moments('b')}, red: mat4x4f, green: mat4x4f, blue: mat4x4f, view: vec3f, along: vec3f) -> vec3f {
+  let place = hairis_place(view, along);
+  let t = place - min(floor(place), ${INCLINATIONS - 2}.0);
+  let across = view - dot(view, along) * along;
+  let v = across / max(length(across), 1e-6);
+  let w = cross(along, v);
+  var q = array<mat4x4f, 3>(red, green, blue);
+  var light = vec3f();
+  for (var c = 0; c < 3; c++) {
+    let one = q[c] * vec4f(0.0, 0.0, 0.0, 1.0);
+    let u2 = q[c] * vec4f(along, 0.0);
+    let v2 = q[c] * vec4f(v, 0.0);
+    let ww = dot(q[c] * vec4f(w, 0.0), vec4f(w, 0.0));
+    let total = mix(a0[c], b0[c], t);
+    light[c] = total * (one.w + ww) + mix(a1[c], b1[c], t) * 2.0 * dot(one.xyz, along) + mix(a2[c], b2[c], t) * 2.0 * dot(one.xyz, v)
+      + mix(a3[c], b3[c], t) * (dot(u2.xyz, along) - ww) + mix(a4[c], b4[c], t) * (dot(v2.xyz, v) - ww) + mix(a5[c], b5[c], t) * 2.0 * dot(u2.xyz, v);
+  }
+  return max(light, vec3f());
+}`, [placeFunction.functionNode ?? placeFunction]);
+
+/// Width in pixels from which a ribbon shows the hit of each pixel. Narrower ribbons show the mean over the fibre, without which pixels
+/// would sparkle.
+const NARROW = 3;
+
+/// S cos theta of one direction towards the light, for the constants in parameters c0, c1...
+function directSource({ call, type, places }, isNearField) {
+  const count = Math.ceil(places.length / 4),
+    copies = places.map((place, at) => `  hair.${place} = c${at >> 2}.${'xyzw'[at & 3]};`);
+  const value = h => `${call}(hair, wo, ${h}, wi).value`,
+    rule = OFFSETS.flatMap(([h, weight]) => [h, -h].map(offset => `vec2f(${offset}, ${weight / 2})`));
+  // One call in a loop, because a call for each offset would be as many copies of the model.
+  const mean = `
+  var rule = array<vec2f, ${rule.length}>(${rule.join(', ')});
+  let isNarrow = pixels < ${NARROW}.0;
+  var sum = vec3f();
+  for (var i = 0; i < select(1, ${rule.length}, isNarrow); i++) {
+    sum += select(1.0, rule[i].y, isNarrow) * ${value('select(-across, rule[i].x, isNarrow)')};
+  }`;
+  return `
+fn hairis_direct(${Array.from({ length: count }, (_, i) => `c${i}: vec4f`).join(', ')}, view: vec3f, along: vec3f, across: f32, pixels: f32, toLight: vec3f) -> vec3f {
+  var hair: ${type};
+${copies.join('\n')}
+  let sine = dot(view, along);
+  let side = view - sine * along;
+  let cosine = max(length(side), 1e-6);
+  let v = side / cosine;
+  let wo = vec3f(sine, cosine, 0.0);
+  let wi = vec3f(dot(toLight, along), dot(toLight, v), dot(toLight, cross(along, v)));
+  ${isNearField ? mean : `let sum = ${value('0.0')};`}
+  return sum * length(wi.yz);
+}`;
+}
+
+/// The quadratic form of a channel of radiance in spherical harmonics of order 2, whose basis is that of three.js.
+export function quadratic(harmonics, channel) {
+  if (!(harmonics instanceof SphericalHarmonics3)) return new Matrix4().multiplyScalar(0);
+  const l = harmonics.coefficients.map(color => color.getComponent(channel)),
+    [a, b, c, d, e] = [0.282095, 0.488603, 1.092548, 0.315392, 0.546274];
+  const constant = a * l[0] - d * l[6],
+    [x, y, z] = [l[3], l[1], l[2]].map(one => (b * one) / 2),
+    [xy, yz, xz] = [l[4], l[5], l[7]].map(one => (c * one) / 2);
+  return new Matrix4().set(e * l[8], xy, xz, x, xy, -e * l[8], yz, y, xz, yz, 3 * d * l[6], z, x, y, z, constant);
+}

@@ -1,0 +1,106 @@
+/// What a material does with light from all around: integrals over directions, by the module, for each inclination of the viewer.
+import { direction } from '#page';
+
+/// Inclinations of the table: evenly from -90 to 90 degrees, whose ends are moved in by half a degree.
+export const INCLINATIONS = 33;
+/// Numbers by inclination and channel: the total, and the moments by u, v, u u, v v and u v.
+export const MOMENTS = 6;
+
+/// Half of a rule of Gauss for the offset h in [-1, 1]; the other half mirrors it. A model of the far field needs none.
+export const OFFSETS = [
+  [0.3399810436, 0.6521451549],
+  [0.8611363116, 0.3478548451],
+];
+const FAR = [[0, 1]];
+
+/// Steps along and around the fibre: refined until the total is within 1% of the albedo that the kernel computes.
+const GRIDS = [64, 128, 256];
+const cells = GRIDS.map(rows => {
+  const columns = 2 * rows,
+    list = { count: rows * columns, u: [], v: [], w: [], weight: [] };
+  for (let row = 0; row < rows; row++)
+    for (let column = 0; column < columns; column++) {
+      const theta = 180 * ((row + 0.5) / rows - 0.5),
+        [u, v, w] = direction(theta, 360 * ((column + 0.5) / columns - 0.5)),
+        cos = Math.hypot(v, w);
+      list.u.push(u);
+      list.v.push(v);
+      list.w.push(w);
+      // The cosine of S cos theta, and the one of the solid angle.
+      list.weight.push((cos * cos * 2 * Math.PI ** 2) / list.count);
+    }
+  return list;
+});
+
+/// Integrals of S cos theta over incoming directions, for the material in slot 0 of the kernel.
+///
+/// - `moments`: Float32Array of INCLINATIONS x MOMENTS x 4, the fourth number unused. Directions are in the frame of the hit: u along the
+///   fibre, v towards the viewer. Moments with one w vanish, because the mean over h is even in w.
+/// - `forward`: mean forward albedo of hair in all directions, linear RGB: light that leaves within 90 degrees of its azimuth, as a mean
+///   over inclinations by cos^2, the share of strands with an inclination that a ray meets.
+/// - `scale`: 1, or the factor that makes the largest albedo 1.
+///
+/// Totals are those of the kernel's albedos, and the other numbers are in proportion: the quadrature decides shares alone.
+export function scattering(kernel, material) {
+  const model = kernel.model(material.model),
+    { model: index } = kernel.entry(material),
+    offsets = model.near_field ? OFFSETS : FAR,
+    weights = offsets.reduce((sum, [, weight]) => sum + weight, 0);
+  const moments = new Float32Array(4 * MOMENTS * INCLINATIONS),
+    forward = [0, 0, 0];
+  let [most, norm] = [0, 0];
+  for (let step = 0; step < INCLINATIONS; step++) {
+    const theta = Math.max(-89.5, Math.min(89.5, 180 * (step / (INCLINATIONS - 1) - 0.5))),
+      by = Math.cos((theta * Math.PI) / 180) ** 2;
+    norm += by;
+    for (const [h, weight] of offsets) {
+      const share = weight / weights,
+        { sums, ahead } = oneView(kernel, index, model.lobes.length, { theta, h });
+      for (let c = 0; c < 3; c++) {
+        for (let moment = 0; moment < MOMENTS; moment++) moments[4 * (MOMENTS * step + moment) + c] += share * sums[moment][c];
+        forward[c] += share * by * ahead[c];
+      }
+    }
+    for (let c = 0; c < 3; c++) most = Math.max(most, moments[4 * MOMENTS * step + c]);
+  }
+  const scale = most > 1 ? 1 / most : 1;
+  return { moments, scale, forward: forward.map(sum => Math.min(1, (scale * sum) / norm)) };
+}
+
+function oneView(kernel, index, lobes, view) {
+  kernel.setView(0, view, 2 ** lobes - 1);
+  const { work } = kernel;
+  work[0][0] = Math.sin((view.theta * Math.PI) / 180);
+  kernel.calls.albedos(0, 1);
+  const albedo = [0, 1, 2].map(c => [0, 1, 2, 3].reduce((sum, lobe) => sum + work[1 + 3 * lobe + c][0], 0));
+  let sums, ahead, error;
+  for (const grid of cells) {
+    const { u, v, w, weight, count } = grid;
+    [u, v, w].forEach((column, axis) => work[axis].set(column));
+    kernel.calls.eval(0, index, 0, count);
+    sums = Array.from({ length: MOMENTS }, () => [0, 0, 0]);
+    ahead = [0, 0, 0];
+    error = 0;
+    for (let c = 0; c < 3; c++) {
+      const values = work[3 + c];
+      let [total, mu, mv, muu, mvv, muv, front] = [0, 0, 0, 0, 0, 0, 0];
+      for (let i = 0; i < count; i++) {
+        const value = values[i] * weight[i],
+          [a, b] = [u[i], v[i]];
+        total += value;
+        mu += value * a;
+        mv += value * b;
+        muu += value * a * a;
+        mvv += value * b * b;
+        muv += value * a * b;
+        if (b < 0) front += value;
+      }
+      const by = total > 0 ? albedo[c] / total : 0;
+      [total, mu, mv, muu, mvv, muv].forEach((sum, moment) => (sums[moment][c] = sum * by));
+      ahead[c] = front * by;
+      if (albedo[c] > 0) error = Math.max(error, Math.abs(total / albedo[c] - 1));
+    }
+    if (error < 0.01) break;
+  }
+  return { sums, ahead };
+}
