@@ -12,17 +12,24 @@ mkdir -p "$out" "$work"
 cp package.json "$work"
 npm install --silent --no-audit --no-fund --no-package-lock --prefix "$work"
 web=$root/harness/page/web
-cat "$web"/{kernel,inputs,fields}.js src/panel.js > "$work/page.js"
+cat "$web"/{kernel,light,inputs,fields}.js src/panel.js > "$work/page.js"
 export NODE_PATH=$work/node_modules
 bundle() { # bundle FILE OUTPUT [ARGUMENT...]
   "$work/node_modules/.bin/esbuild" "src/$1" --bundle --minify --format=esm --charset=utf8 --log-level=warning "--alias:#page=$work/page.js" "--outfile=$out/$2" "${@:3}"
 }
 bundle library.js hairis-three.js --external:three
 bundle example.js example.js
+bundle paths.js paths.js --loader:.wgsl=text
 node types.mjs "$target/page/hairis.wasm" > "$out/hairis-three.d.ts"
-for name in index; do
+for name in index paths; do
   # One style for all pages.
   sed -e "/<!-- style -->/{r /dev/stdin" -e 'd}' "web/$name.html" < <(sed -n '/<style>/,/<\/style>/p' "$web/index.html") | sed 's/^ *//' > "$out/$name.html"
+done
+shader=("${HAIRIS:-}" shader)
+[ -n "${HAIRIS:-}" ] || shader=(cargo run -q --release --locked --manifest-path "$root/Cargo.toml" -p hairis-shader --)
+for file in "$target"/page/*.wgsl; do
+  name=$(basename "$file" .wgsl)
+  [[ $name == *.paths ]] || "${shader[@]}" --target wgsl --model "$name" --call eval_sample_hit | sed '/^ *\/\//d' > "$target/page/$name.paths.wgsl"
 done
 if [ ! -e "$work/groom.hair" ]; then
   render=("${RENDER:-}")
@@ -30,4 +37,4 @@ if [ ! -e "$work/groom.hair" ]; then
   "${render[@]}" render straight --strands 5000 --size 8x8 --spp 1 --out "$work/groom.exr" --export "$work/groom.hair" > /dev/null
 fi
 cp "$work/groom.hair" "$out"
-for file in hairis-three.js example.js; do echo "$file has $(wc -c < "$out/$file") bytes, $(gzip -c "$out/$file" | wc -c) compressed"; done
+for file in hairis-three.js example.js paths.js; do echo "$file has $(wc -c < "$out/$file") bytes, $(gzip -c "$out/$file" | wc -c) compressed"; done

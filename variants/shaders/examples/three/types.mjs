@@ -69,7 +69,7 @@ export class Strands {
   /** Reads cyHair (\`.hair\`). */
   static read(buffer: ArrayBuffer): Strands;
   every(step: number, wider?: number): Strands;
-  sphere(): Sphere;
+  readonly box: { low: number[]; high: number[] };
 }
 
 export class Crossings {
@@ -80,6 +80,8 @@ export class Crossings {
   update(light: Vector3): void;
 }
 
+/** The sphere around the box of all strands. */
+export function sphereOf(strands: Strands): Sphere;
 /** Ribbons that face the camera, for a Mesh. */
 export function ribbons(strands: Strands): InstancedBufferGeometry;
 /** Lines for LineSegments. */

@@ -1,5 +1,6 @@
 /// How many strands lie between a place and the light: a volume over the box of the hair, as a texture for the material.
 import { Data3DTexture, DataUtils, HalfFloatType, LinearFilter, RGFormat, Vector3 } from 'three/webgpu';
+import { sphereOf } from './geometry.js';
 
 /// Directions over which the light from all around is averaged: the axes and the diagonals of a cube.
 const AROUND = [-1, 0, 1].flatMap(x => [-1, 0, 1].flatMap(y => [-1, 0, 1].map(z => new Vector3(x, y, z)))).filter(v => v.lengthSq() & 1);
@@ -12,7 +13,7 @@ export class Crossings {
   constructor(strands, size = 48) {
     this.strands = strands;
     this.size = size;
-    const { center, radius } = strands.sphere();
+    const { center, radius } = sphereOf(strands);
     this.low = center.clone().addScalar(-radius);
     this.side = 2 * radius;
     this.data = new Uint16Array(2 * size ** 3);

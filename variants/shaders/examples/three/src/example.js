@@ -2,7 +2,7 @@
 import * as THREE from 'three/webgpu';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { buttons, check, fill, materialPanel, newMaterial, refuse, slider } from '#page';
-import { Crossings, Hairis, Strands, lines, ribbons } from './library.js';
+import { Crossings, Hairis, Strands, lines, ribbons, sphereOf } from './library.js';
 import { sky } from './sky.js';
 
 const $ = id => document.getElementById(id);
@@ -11,7 +11,7 @@ const WIDER = 4;
 const state = { lines: false, azimuth: 40, elevation: 35, sun: 3, sky: 0.5, shadows: true };
 
 /// The page's scene, for the console and for tests.
-const page = (globalThis.hairis = { THREE, Crossings, Hairis, Strands, lines, ribbons, state, sky, frames: 0 });
+const page = (globalThis.hairis = { THREE, Crossings, Hairis, Strands, lines, ribbons, state, sky, frames: 0, pending: 0, isStale: true, isBusy: false });
 
 async function start() {
   if (!navigator.gpu) throw new Error('This browser has no WebGPU');
@@ -21,7 +21,7 @@ async function start() {
     step = Number(query.get('every')) || 1,
     strands = Strands.read(file).every(step, WIDER * Math.sqrt(step)),
     crossings = new Crossings(strands),
-    { center, radius } = strands.sphere();
+    { center, radius } = sphereOf(strands);
   const renderer = new THREE.WebGPURenderer({ antialias: true });
   renderer.toneMapping = THREE.ACESFilmicToneMapping;
   await renderer.init();
@@ -43,7 +43,9 @@ async function start() {
 
   /// Another model, or strands drawn otherwise, take another material; other values do not.
   async function shown(given, isOther) {
+    page.pending++;
     try {
+      page.isStale = true;
       if (!isOther) {
         page.material?.set(given);
         return '';
@@ -57,10 +59,13 @@ async function start() {
       hair = new THREE[state.lines ? 'LineSegments' : 'Mesh'](geometries[kind], material);
       scene.add(hair);
       page.material = material;
+      page.isStale = true;
       return '';
     } catch (error) {
       refuse(error.message);
       return error.message;
+    } finally {
+      page.pending--;
     }
   }
   let given = null;
@@ -73,6 +78,7 @@ async function start() {
     light.position.copy(center).add(new THREE.Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)).multiplyScalar(4 * radius));
     light.intensity = state.sun;
     if (page.material) page.material.environment = sky(state.sky);
+    page.isStale = true;
   };
   const number = (label, name, range, unit) =>
     slider({ label, unit, range, get: () => state[name], set: value => ((state[name] = value), aim()) });
@@ -97,21 +103,20 @@ async function start() {
     renderer.setSize(width, height);
     camera.aspect = width / height;
     camera.updateProjectionMatrix();
+    page.isStale = true;
   };
   new ResizeObserver(resize).observe($('view'));
   resize();
-  const times = [];
-  let last = 0;
-  renderer.setAnimationLoop(now => {
-    controls.update();
+  renderer.setAnimationLoop(async () => {
+    page.isStale ||= controls.update();
+    if (page.isBusy || !page.isStale || !page.material) return;
+    [page.isBusy, page.isStale] = [true, false];
+    const begin = performance.now();
     renderer.render(scene, camera);
+    await renderer.backend.device.queue.onSubmittedWorkDone();
     page.frames++;
-    times.push(now - last);
-    last = now;
-    if (times.length < 30) return;
-    const frame = times.sort((a, b) => a - b)[15];
-    times.length = 0;
-    $('note').textContent = `${strands.ends.length} strands, ${strands.count} segments, ${frame.toFixed(0)} ms a frame. Shadows are means over cells of ${(crossings.side / crossings.size).toFixed(1)} cm, and light that strands pass on to each other sideways or backward is missing.`;
+    page.isBusy = false;
+    $('note').textContent = `${strands.ends.length} strands, ${strands.count} segments, ${(performance.now() - begin).toFixed(0)} ms for the last frame. Shadows are means over cells of ${(crossings.side / crossings.size).toFixed(1)} cm, and light that strands pass on to each other sideways or backward is missing.`;
   });
 }
 

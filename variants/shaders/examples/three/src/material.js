@@ -6,7 +6,7 @@ import {
 } from 'three/tsl';
 import { multiple } from './multiple.js';
 import { INCLINATIONS, MOMENTS, OFFSETS, scattering } from './scattering.js';
-import { hitFunction } from './source.js';
+import { hitFunction } from './models.js';
 
 /// Hair of one model. `Hairis.material` makes it, after it has loaded the source of the model.
 ///

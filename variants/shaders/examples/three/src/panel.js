@@ -1,5 +1,5 @@
-// The page's own controls of a material, without its state, links and second material. Behind kernel.js, inputs.js and fields.js of
-// harness/page, with which build.sh makes the module #page.
+// The page's own controls of a material, without its state, links and second material. Behind kernel.js, light.js, inputs.js and fields.js
+// of harness/page, with which build.sh makes the module #page.
 
 let hooks = {};
 const changed = () => hooks.changed(),
@@ -56,4 +56,4 @@ function materialPanel(loaded, material, shown, rows = () => []) {
   return shown(given(material), true);
 }
 
-export { Kernel, buttons, check, choice, direction, fill, make, materialPanel, newMaterial, refuse, slider, toSrgb };
+export { Environment, Kernel, buttons, check, choice, direction, fill, make, materialPanel, newMaterial, readLight, refuse, skyLight, slider, toSrgb };

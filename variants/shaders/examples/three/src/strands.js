@@ -1,5 +1,4 @@
-/// Strands of hair, and geometry of them for three.js.
-import { BufferGeometry, Float32BufferAttribute, InstancedBufferAttribute, InstancedBufferGeometry, Sphere, Vector3 } from 'three/webgpu';
+/// Strands of hair.
 
 /// Polylines with a radius: `nodes` holds x, y, z and the radius of each node, and `ends[i]` is the number of nodes up to the end of
 /// strand i, each of which has at least two nodes. Normals, tangents and lengths follow from the nodes.
@@ -46,18 +45,17 @@ export class Strands {
     return this.nodes.length / 4 - this.ends.length;
   }
 
-  /// The sphere around all nodes, about the middle of their box.
-  sphere() {
-    const { nodes } = this,
-      low = [Infinity, Infinity, Infinity],
-      high = [-Infinity, -Infinity, -Infinity];
-    for (let at = 0; at < nodes.length; at++)
-      if (at % 4 < 3) {
-        low[at % 4] = Math.min(low[at % 4], nodes[at]);
-        high[at % 4] = Math.max(high[at % 4], nodes[at]);
+  /// The least and the largest coordinates of all strands with their radii.
+  get box() {
+    const low = [Infinity, Infinity, Infinity],
+      high = [-Infinity, -Infinity, -Infinity],
+      { nodes } = this;
+    for (let at = 0; at < nodes.length; at += 4)
+      for (let axis = 0; axis < 3; axis++) {
+        low[axis] = Math.min(low[axis], nodes[at + axis] - nodes[at + 3]);
+        high[axis] = Math.max(high[axis], nodes[at + axis] + nodes[at + 3]);
       }
-    const [a, b] = [new Vector3(...low), new Vector3(...high)];
-    return new Sphere(a.clone().add(b).multiplyScalar(0.5), a.distanceTo(b) / 2);
+    return { low, high };
   }
 }
 
@@ -80,48 +78,6 @@ function tangentsOf({ nodes, ends }) {
     first = end;
   }
   return tangents;
-}
-
-/// Ribbons that face the camera: one instance of a quad for each segment, which the vertex stage of `HairMaterial` widens.
-export function ribbons(strands) {
-  const geometry = new InstancedBufferGeometry(),
-    { nodes, tangents, count } = strands;
-  // x is the end of the segment, y the side.
-  geometry.setAttribute('position', new Float32BufferAttribute([0, -1, 0, 0, 1, 0, 1, -1, 0, 1, 1, 0], 3));
-  geometry.setIndex([0, 1, 2, 2, 1, 3]);
-  const [starts, stops, first, last] = [4, 4, 3, 3].map(width => new Float32Array(width * count));
-  let at = 0;
-  strands.segments(node => {
-    starts.set(nodes.subarray(4 * node, 4 * node + 4), 4 * at);
-    stops.set(nodes.subarray(4 * node + 4, 4 * node + 8), 4 * at);
-    first.set(tangents.subarray(3 * node, 3 * node + 3), 3 * at);
-    last.set(tangents.subarray(3 * node + 3, 3 * node + 6), 3 * at);
-    at++;
-  });
-  for (const [name, array, width] of [['start', starts, 4], ['stop', stops, 4], ['startTangent', first, 3], ['stopTangent', last, 3]])
-    geometry.setAttribute(name, new InstancedBufferAttribute(array, width));
-  geometry.instanceCount = count;
-  geometry.boundingSphere = strands.sphere();
-  return geometry;
-}
-
-/// Lines of one pixel for `LineSegments`: cheaper than ribbons, as wide at every distance, and shaded by the mean over the fibre.
-export function lines(strands) {
-  const geometry = new BufferGeometry(),
-    { nodes, tangents, count } = strands;
-  const [places, directions] = [new Float32Array(6 * count), new Float32Array(6 * count)];
-  let at = 0;
-  strands.segments(node => {
-    for (const end of [node, node + 1]) {
-      places.set(nodes.subarray(4 * end, 4 * end + 3), at);
-      directions.set(tangents.subarray(3 * end, 3 * end + 3), at);
-      at += 3;
-    }
-  });
-  geometry.setAttribute('position', new Float32BufferAttribute(places, 3));
-  geometry.setAttribute('tangent', new Float32BufferAttribute(directions, 3));
-  geometry.boundingSphere = strands.sphere();
-  return geometry;
 }
 
 /// Reads cyHair: a header of 128 bytes, then segments per strand, points and thicknesses where its flags say so.

@@ -1,5 +1,6 @@
 // Tests of the three.js example, which harness/page/tests/page.mjs runs beside those of the page.
 import { createHash } from 'node:crypto';
+import { paths } from './paths.mjs';
 
 /// A browser whose canvas shows what WebGPU draws in software.
 const ARGUMENTS = ['--no-sandbox', '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan', '--use-angle=vulkan', '--use-vulkan=swiftshader', '--ignore-gpu-blocklist'];
@@ -90,7 +91,7 @@ async function draw({ SCENE, RADIUS, SIDE, EYE, FOV, SUN, TURN, model, values, l
   return { pixels, scale: scale.value, forward: forward.value.toArray() };
 }
 
-export async function three({ chromium, executablePath, address, check, evaluate }) {
+export async function three({ chromium, executablePath, address, check, evaluate, render }) {
   const browser = await chromium.launch({ executablePath, args: ARGUMENTS });
   const open = async (path, viewport) => {
     const page = await browser.newPage({ viewport });
@@ -100,7 +101,7 @@ export async function three({ chromium, executablePath, address, check, evaluate
     await page.goto(address + path);
     return page;
   };
-  const drawn = page => page.waitForFunction(() => globalThis.hairis?.frames > 2 || document.getElementById('refusal').textContent, null, { timeout: 90_000 });
+  const drawn = page => page.waitForFunction(() => globalThis.hairis?.frames > 0 || document.getElementById('refusal').textContent, null, { timeout: 90_000 });
 
   const page = await open('three/?every=500&model=kajiya-kay', { width: 480, height: 800 });
   await drawn(page);
@@ -111,6 +112,7 @@ export async function three({ chromium, executablePath, address, check, evaluate
   await shadows(page, check);
   await page.close();
   await panel(open, drawn, check);
+  await paths({ open, check, render });
   await browser.close();
 }
 
@@ -304,10 +306,7 @@ async function panel(open, drawn, check) {
     check('three.js starts', (await page.locator('#refusal').textContent()) === '', await page.locator('#refusal').textContent());
     check('nothing is cut off', await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `three.js, ${width}`);
     const picture = async () => {
-      await page.evaluate(async () => {
-        const from = hairis.frames;
-        while (hairis.frames < from + 2) await new Promise(requestAnimationFrame);
-      });
+      await page.waitForFunction(() => !hairis.isStale && !hairis.isBusy && !hairis.pending);
       return createHash('sha1').update(await page.locator('#view').screenshot()).digest('hex');
     };
     const seen = [await picture()];
