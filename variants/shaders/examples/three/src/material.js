@@ -1,11 +1,11 @@
 /// Node material of hair for WebGPURenderer: generated WGSL of a model, one directional light, and light from all around.
 import { Matrix4, NodeMaterial, SphericalHarmonics3, Vector3, Vector4 } from 'three/webgpu';
 import {
-  attribute, cameraPosition, cameraProjectionMatrix, cross, float, mix, modelViewMatrix, modelWorldMatrix, modelWorldMatrixInverse,
+  attribute, cameraPosition, cameraProjectionMatrix, cross, dot, float, mix, modelViewMatrix, modelWorldMatrix, modelWorldMatrixInverse,
   normalize, positionGeometry, positionWorld, screenSize, texture3D, uniform, uniformArray, varying, vec3, vec4, wgsl, wgslFn,
 } from 'three/tsl';
 import { multiple } from './multiple.js';
-import { INCLINATIONS, MOMENTS, OFFSETS, scattering } from './scattering.js';
+import { INCLINATIONS, OFFSETS, ROWS, place, scattering } from './scattering.js';
 import { hitFunction } from './models.js';
 
 /// Hair of one model. `Hairis.material` makes it, after it has loaded the source of the model.
@@ -16,7 +16,7 @@ import { hitFunction } from './models.js';
 /// - `lines`: true for `LineSegments`, false for ribbons.
 /// - `leastWidth`: of a ribbon in pixels. Thinner ribbons are widened to it, and stay opaque.
 ///
-/// Materials conserve energy: one whose albedo exceeds 1 for a viewer is scaled as a whole.
+/// Materials conserve energy: where the albedo exceeds 1 for a viewer, the hair is as bright as white light around it.
 export class HairMaterial extends NodeMaterial {
   constructor(hairis, source, material, { light = null, environment = null, crossings = null, lines = false, leastWidth = 1 } = {}) {
     super();
@@ -26,9 +26,8 @@ export class HairMaterial extends NodeMaterial {
     const hit = hitFunction(source),
       model = hairis.kernel.model(material.model);
     this.constants = uniformArray(Array.from({ length: Math.ceil(hit.places.length / 4) }, () => new Vector4()), 'vec4');
-    this.moments = uniformArray(Array.from({ length: INCLINATIONS * MOMENTS }, () => new Vector4()), 'vec4');
+    this.table = uniformArray(Array.from({ length: INCLINATIONS * ROWS }, () => new Vector4()), 'vec4');
     this.forward = uniform(new Vector3());
-    this.scale = uniform(1);
     this.set(material);
 
     const tangent = lines ? attribute('tangent', 'vec3') : mix(attribute('startTangent', 'vec3'), attribute('stopTangent', 'vec3'), positionGeometry.x),
@@ -42,10 +41,15 @@ export class HairMaterial extends NodeMaterial {
         return light ? new Vector3(light.color.r, light.color.g, light.color.b).multiplyScalar(light.intensity) : new Vector3();
       });
     const args = Object.fromEntries(this.constants.array.map((_, i) => [`c${i}`, this.constants.element(i)]));
-    const lit = direct({ ...args, view, along, across, pixels, toLight }).mul(irradiance);
-    const quadratics = [0, 1, 2].map(c => uniform(new Matrix4()).onObjectUpdate(() => quadratic(this.environment, c)));
-    const places = [0, 1].flatMap(side => Array.from({ length: MOMENTS }, (_, i) => this.moments.element(inclinationOf(view, along, side).mul(MOMENTS).add(i))));
-    const around = environmentFunction(...places, ...quadratics, view, along);
+    // Two neighbours in the table, and the place between them.
+    const at = wgslFn(place)({ sine: dot(view, along) }),
+      first = at.floor().min(INCLINATIONS - 2),
+      rows = Array.from({ length: ROWS }, (_, row) => [0, 1].map(side => this.table.element(first.add(side).mul(ROWS).add(row).toInt()))),
+      [...moments] = rows.map(([a, b]) => mix(a, b, at.sub(first)).xyz),
+      factor = moments.pop();
+    const lit = direct({ ...args, view, along, across, pixels, toLight }).mul(irradiance).mul(factor),
+      quadratics = [0, 1, 2].map(c => uniform(new Matrix4()).onObjectUpdate(() => quadratic(this.environment, c))),
+      around = environmentFunction(...moments, ...quadratics, view, along);
 
     const dim = wgslFn(multiple);
     let [behind, within] = [vec3(1), vec3(1)];
@@ -55,7 +59,7 @@ export class HairMaterial extends NodeMaterial {
       behind = dim(this.forward, counts.x).xyz;
       within = dim(this.forward, counts.y).xyz;
     }
-    this.colorNode = lit.mul(behind).add(around.mul(within)).mul(this.scale);
+    this.colorNode = lit.mul(behind).add(around.mul(within));
   }
 
   /// Sets the parameters: `{ model, word, values }` as the module describes them, with fields by the names of `hairis eval`. The model must
@@ -64,12 +68,11 @@ export class HairMaterial extends NodeMaterial {
     const { kernel } = this.hairis,
       refusal = kernel.setMaterial(0, material);
     if (refusal) throw new Error(refusal);
-    const { moments, forward, scale } = scattering(kernel, material);
+    const { table, forward } = scattering(kernel, material);
     const numbers = kernel.work[0].slice(0, kernel.calls.constants(0));
     this.constants.array.forEach((four, i) => four.fromArray([0, 1, 2, 3].map(j => numbers[4 * i + j] ?? 0)));
-    this.moments.array.forEach((four, i) => four.fromArray(moments, 4 * i));
+    this.table.array.forEach((four, i) => four.fromArray(table, 4 * i));
     this.forward.value.fromArray(forward);
-    this.scale.value = scale;
   }
 
   /// Turns quads into ribbons that face the camera. Returns the place across the ribbon, from -1 to 1 along u x v, and its width in pixels.
@@ -95,22 +98,9 @@ export class HairMaterial extends NodeMaterial {
   }
 }
 
-/// Row of the table at or after the inclination of the viewer.
-function inclinationOf(view, along, side) {
-  return placeFunction(view, along).floor().min(INCLINATIONS - 2).add(side).toInt();
-}
-
-const placeFunction = wgslFn(`
-fn hairis_place(view: vec3f, along: vec3f) -> f32 {
-  return (asin(clamp(dot(view, along), -1.0, 1.0)) / ${Math.PI} + 0.5) * ${INCLINATIONS - 1}.0;
-}`);
-
 /// Radiance towards the viewer under light that is quadratic in its direction: x Q x with x = (direction, 1), by channel.
-const moments = side => Array.from({ length: MOMENTS }, (_, i) => `${side}${i}: vec4f`).join(', ');
 const environmentFunction = wgslFn(`
-fn hairis_around(${moments('a')}, ${moments('b')}, red: mat4x4f, green: mat4x4f, blue: mat4x4f, view: vec3f, along: vec3f) -> vec3f {
-  let place = hairis_place(view, along);
-  let t = place - min(floor(place), ${INCLINATIONS - 2}.0);
+fn hairis_around(total: vec3f, mu: vec3f, mv: vec3f, muu: vec3f, mvv: vec3f, muv: vec3f, red: mat4x4f, green: mat4x4f, blue: mat4x4f, view: vec3f, along: vec3f) -> vec3f {
   let across = view - dot(view, along) * along;
   let v = across / max(length(across), 1e-6);
   let w = cross(along, v);
@@ -118,15 +108,15 @@ fn hairis_around(${moments('a')}, ${moments('b')}, red: mat4x4f, green: mat4x4f,
   var light = vec3f();
   for (var c = 0; c < 3; c++) {
     let one = q[c] * vec4f(0.0, 0.0, 0.0, 1.0);
-    let u2 = q[c] * vec4f(along, 0.0);
-    let v2 = q[c] * vec4f(v, 0.0);
+    let qu = q[c] * vec4f(along, 0.0);
+    let qv = q[c] * vec4f(v, 0.0);
+    // The total is the sum of the moments by u u, v v and w w.
     let ww = dot(q[c] * vec4f(w, 0.0), vec4f(w, 0.0));
-    let total = mix(a0[c], b0[c], t);
-    light[c] = total * (one.w + ww) + mix(a1[c], b1[c], t) * 2.0 * dot(one.xyz, along) + mix(a2[c], b2[c], t) * 2.0 * dot(one.xyz, v)
-      + mix(a3[c], b3[c], t) * (dot(u2.xyz, along) - ww) + mix(a4[c], b4[c], t) * (dot(v2.xyz, v) - ww) + mix(a5[c], b5[c], t) * 2.0 * dot(u2.xyz, v);
+    light[c] = total[c] * (one.w + ww) + 2.0 * (mu[c] * dot(one.xyz, along) + mv[c] * dot(one.xyz, v) + muv[c] * dot(qu.xyz, v))
+      + muu[c] * (dot(qu.xyz, along) - ww) + mvv[c] * (dot(qv.xyz, v) - ww);
   }
   return max(light, vec3f());
-}`, [placeFunction.functionNode ?? placeFunction]);
+}`);
 
 /// Width in pixels from which a ribbon shows the hit of each pixel. Narrower ribbons show the mean over the fibre, without which pixels
 /// would sparkle.

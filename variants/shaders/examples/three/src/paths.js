@@ -46,11 +46,11 @@ async function start() {
     const { kernel } = models,
       refusal = kernel.setMaterial(0, { model, values });
     if (refusal) return refusal;
-    const { scale } = scattering(kernel, { model, values }),
+    const { table } = scattering(kernel, { model, values }),
       constants = kernel.work[0].slice(0, kernel.calls.constants(0));
     if (isOther) isReady = false;
     try {
-      await tracer.setMaterial(await models.source(model, '.paths.wgsl'), constants, scale);
+      await tracer.setMaterial(await models.source(model, '.paths.wgsl'), constants, table);
     } catch (error) {
       refuse(`The shader of ${model} did not compile: ${error.message}`);
       return '';

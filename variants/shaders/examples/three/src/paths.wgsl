@@ -11,7 +11,6 @@ struct Scene {
   forward: vec3f,
   rows: u32,
   backdrop: vec3f, // what the camera sees beside the hair, in place of the map
-  scale: f32, // factor on the model
 }
 
 struct Box {
@@ -33,7 +32,8 @@ struct Texel {
 @group(0) @binding(4) var<storage, read> boxes: array<Box>;
 @group(0) @binding(5) var<storage, read> map: array<Texel>;
 @group(0) @binding(6) var<storage, read> material: MATERIAL;
-@group(0) @binding(7) var<storage, read_write> picture: array<vec4f>;
+@group(0) @binding(7) var<storage, read> factors: array<vec4f>; // that conserve energy, by inclination
+@group(0) @binding(8) var<storage, read_write> picture: array<vec4f>;
 
 const PI = 3.14159265;
 const MOST_BOUNCES = 1000u;
@@ -182,6 +182,13 @@ fn drawLight(xi: vec3f) -> vec4f {
   return vec4f(r * sin(turn), y, -r * cos(turn), density(low));
 }
 
+// Factor for a viewer at an inclination.
+fn conserve(sine: f32) -> vec3f {
+  let place = hairis_place(sine);
+  let first = min(u32(place), arrayLength(&factors) - 2u);
+  return mix(factors[first].xyz, factors[first + 1u].xyz, place - f32(first));
+}
+
 // Share of a sample where two ways of drawing find the same light.
 fn shareOf(own: f32, other: f32) -> f32 {
   return own * own / (own * own + other * other);
@@ -227,19 +234,20 @@ fn draw(@builtin(global_invocation_id) id: vec3u) {
     let wo = vec3f(sine, dot(-ray.direction, v), 0.0);
     let lamp = drawLight(three());
     let wi = vec3f(dot(lamp.xyz, u), dot(lamp.xyz, v), dot(lamp.xyz, w));
+    let factor = conserve(sine);
     let both = CALL(hair, wo, h, wi, three());
     let cosine = length(wi.yz);
     if lamp.w > 0.0 && max(both.eval_value.x, max(both.eval_value.y, both.eval_value.z)) > 0.0 {
       let shadow = Ray(node.xyz, lamp.xyz, segment.y, 1.5 * node.w / max(cosine, 0.01));
       if meet(shadow, true).distance < 0.0 {
         let radiance = map[texelOf(lamp.xyz)].radiance;
-        light += throughput * scene.scale * both.eval_value * cosine * radiance * shareOf(lamp.w, both.eval_pdf) / lamp.w;
+        light += throughput * factor * both.eval_value * cosine * radiance * shareOf(lamp.w, both.eval_pdf) / lamp.w;
       }
     }
     if both.sample_slot < 0.0 {
       break; // discarded: the path carries no light
     }
-    throughput *= scene.scale * both.sample_weight;
+    throughput *= factor * both.sample_weight;
     pdf = both.sample_pdf;
     let local = both.sample_wi;
     ray = Ray(node.xyz, normalize(local.x * u + local.y * v + local.z * w), segment.y, 1.5 * node.w / max(length(local.yz), 0.01));

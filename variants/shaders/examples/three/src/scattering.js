@@ -3,8 +3,9 @@ import { direction } from '#page';
 
 /// Inclinations of the table: evenly from -90 to 90 degrees, whose ends are moved in by half a degree.
 export const INCLINATIONS = 33;
-/// Numbers by inclination and channel: the total, and the moments by u, v, u u, v v and u v.
-export const MOMENTS = 6;
+/// Numbers by inclination and channel: the total, the moments by u, v, u u, v v and u v, and the factor that conserves energy.
+export const ROWS = 7;
+const FACTOR = ROWS - 1;
 
 /// Half of a rule of Gauss for the offset h in [-1, 1]; the other half mirrors it. A model of the far field needs none.
 export const OFFSETS = [
@@ -34,11 +35,11 @@ const cells = GRIDS.map(rows => {
 
 /// Integrals of S cos theta over incoming directions, for the material in slot 0 of the kernel.
 ///
-/// - `moments`: Float32Array of INCLINATIONS x MOMENTS x 4, the fourth number unused. Directions are in the frame of the hit: u along the
-///   fibre, v towards the viewer. Moments with one w vanish, because the mean over h is even in w.
+/// - `table`: Float32Array of INCLINATIONS x ROWS x 4, the fourth number unused. Directions are in the frame of the hit: u along the fibre,
+///   v towards the viewer. Moments with one w vanish, because the mean over h is even in w. The last row is 1, or the factor by which a
+///   viewer gets back as much light as arrives, as `Conserving` of the library scales; the other rows have the factor.
 /// - `forward`: mean forward albedo of hair in all directions, linear RGB: light that leaves within 90 degrees of its azimuth, as a mean
 ///   over inclinations by cos^2, the share of strands with an inclination that a ray meets.
-/// - `scale`: 1, or the factor that makes the largest albedo 1.
 ///
 /// Totals are those of the kernel's albedos, and the other numbers are in proportion: the quadrature decides shares alone.
 export function scattering(kernel, material) {
@@ -46,26 +47,34 @@ export function scattering(kernel, material) {
     { model: index } = kernel.entry(material),
     offsets = model.near_field ? OFFSETS : FAR,
     weights = offsets.reduce((sum, [, weight]) => sum + weight, 0);
-  const moments = new Float32Array(4 * MOMENTS * INCLINATIONS),
+  const table = new Float32Array(4 * ROWS * INCLINATIONS),
     forward = [0, 0, 0];
-  let [most, norm] = [0, 0];
+  let norm = 0;
   for (let step = 0; step < INCLINATIONS; step++) {
     const theta = Math.max(-89.5, Math.min(89.5, 180 * (step / (INCLINATIONS - 1) - 0.5))),
-      by = Math.cos((theta * Math.PI) / 180) ** 2;
+      by = Math.cos((theta * Math.PI) / 180) ** 2,
+      views = offsets.map(([h, weight]) => ({ share: weight / weights, ...oneView(kernel, index, model.lobes.length, { theta, h }) })),
+      mean = pick => views.reduce((sum, view) => sum + view.share * pick(view), 0);
     norm += by;
-    for (const [h, weight] of offsets) {
-      const share = weight / weights,
-        { sums, ahead } = oneView(kernel, index, model.lobes.length, { theta, h });
-      for (let c = 0; c < 3; c++) {
-        for (let moment = 0; moment < MOMENTS; moment++) moments[4 * (MOMENTS * step + moment) + c] += share * sums[moment][c];
-        forward[c] += share * by * ahead[c];
-      }
+    for (let c = 0; c < 3; c++) {
+      const factor = 1 / Math.max(1, mean(({ sums }) => sums[0][c])),
+        at = 4 * ROWS * step + c;
+      for (let row = 0; row < FACTOR; row++) table[at + 4 * row] = factor * mean(({ sums }) => sums[row][c]);
+      table[at + 4 * FACTOR] = factor;
+      forward[c] += factor * by * mean(({ ahead }) => ahead[c]);
     }
-    for (let c = 0; c < 3; c++) most = Math.max(most, moments[4 * MOMENTS * step + c]);
   }
-  const scale = most > 1 ? 1 / most : 1;
-  return { moments, scale, forward: forward.map(sum => Math.min(1, (scale * sum) / norm)) };
+  return { table, forward: forward.map(sum => Math.min(1, sum / norm)) };
 }
+
+/// The factors alone, four numbers by inclination.
+export const factorsOf = table => Float32Array.from({ length: 4 * INCLINATIONS }, (_, at) => table[4 * (ROWS * (at >> 2) + FACTOR) + (at & 3)]);
+
+/// The place of an inclination between the rows of the table, in WGSL.
+export const place = `
+fn hairis_place(sine: f32) -> f32 {
+  return (asin(clamp(sine, -1.0, 1.0)) / ${Math.PI} + 0.5) * ${INCLINATIONS - 1}.0;
+}`;
 
 function oneView(kernel, index, lobes, view) {
   kernel.setView(0, view, 2 ** lobes - 1);
@@ -78,7 +87,7 @@ function oneView(kernel, index, lobes, view) {
     const { u, v, w, weight, count } = grid;
     [u, v, w].forEach((column, axis) => work[axis].set(column));
     kernel.calls.eval(0, index, 0, count);
-    sums = Array.from({ length: MOMENTS }, () => [0, 0, 0]);
+    sums = Array.from({ length: FACTOR }, () => [0, 0, 0]);
     ahead = [0, 0, 0];
     error = 0;
     for (let c = 0; c < 3; c++) {

@@ -2,6 +2,7 @@
 import { buildTree } from './tree.js';
 import { hitFunction } from './models.js';
 import source from './paths.wgsl';
+import { factorsOf, place } from './scattering.js';
 
 export class Tracer {
   /// Needs WebGPU. Throws an error that says what is missing.
@@ -26,17 +27,18 @@ export class Tracer {
     return buffer;
   }
 
-  /// Sets the material: the source of `eval_sample_hit` of its model, its constants, and a factor on the model.
-  async setMaterial(text, constants, scale) {
+  /// Sets the material: the source of `eval_sample_hit` of its model, its constants, and the table of `scattering`, which conserves
+  /// energy. Without a table the hair scatters as the model says.
+  async setMaterial(text, constants, table) {
     const { call, type } = hitFunction(text, '_eval_sample_hit');
     this.pipelines[call] ??= this.device.createComputePipelineAsync({
       layout: 'auto',
-      compute: { module: this.device.createShaderModule({ code: text + source.replaceAll('CALL', call).replaceAll('MATERIAL', type) }), entryPoint: 'draw' },
+      compute: { module: this.device.createShaderModule({ code: text + place + source.replaceAll('CALL', call).replaceAll('MATERIAL', type) }), entryPoint: 'draw' },
     });
     const pipeline = await this.pipelines[call];
-    this.constants?.destroy();
-    this.constants = this.buffer(constants, GPUBufferUsage.STORAGE);
-    Object.assign(this, { pipeline, scale });
+    this.material?.forEach(buffer => buffer.destroy());
+    this.material = [constants, table ? factorsOf(table) : new Float32Array(8).fill(1)].map(data => this.buffer(data, GPUBufferUsage.STORAGE));
+    this.pipeline = pipeline;
   }
 
   /// Sets the light, an `Environment`.
@@ -82,7 +84,6 @@ export class Tracer {
         ints = new Uint32Array(floats.buffer);
       [view.eye, view.right, view.up, view.forward, view.backdrop].forEach((vector, row) => floats.set(vector, 4 * row));
       [this.sample++, side, map.width, map.height].forEach((x, row) => (ints[4 * row + 3] = x));
-      floats[19] = this.scale;
       groups.push(this.buffer(floats, GPUBufferUsage.UNIFORM));
     }
     const encoder = device.createCommandEncoder();
@@ -91,7 +92,7 @@ export class Tracer {
       pass.setPipeline(this.pipeline);
       pass.setBindGroup(0, device.createBindGroup({
         layout: this.pipeline.getBindGroupLayout(0),
-        entries: [scene, ...this.hair, map.buffer, this.constants, this.picture].map((buffer, binding) => ({ binding, resource: { buffer } })),
+        entries: [scene, ...this.hair, map.buffer, ...this.material, this.picture].map((buffer, binding) => ({ binding, resource: { buffer } })),
       }));
       pass.dispatchWorkgroups(Math.ceil(side ** 2 / 64));
       pass.end();

@@ -65,7 +65,7 @@ export async function paths({ open, check, render }) {
         { kernel } = models;
       const refusal = kernel.setMaterial(0, { model, values: models.presets(model)[preset] });
       if (refusal) throw new Error(refusal);
-      await tracer.setMaterial(await models.source(model, '.paths.wgsl'), kernel.work[0].slice(0, kernel.calls.constants(0)), 1);
+      await tracer.setMaterial(await models.source(model, '.paths.wgsl'), kernel.work[0].slice(0, kernel.calls.constants(0)));
       tracer.setMap(await readLight(file('map.exr', map)));
       // The camera of hairis-render for hair from a file.
       tracer.setView({ eye: [centre[0], centre[1] + 9 * scale, centre[2] + 52 * scale], at: centre, slope: Math.tan((21 * Math.PI) / 180) }, SIDE);
