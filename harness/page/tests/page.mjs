@@ -1,4 +1,4 @@
-// Tests of the page in headless Chromium: page.mjs FOLDER HAIRIS CHROMIUM. Prints its figures, and fails with what is wrong.
+// Tests of the page in headless Chromium: page.mjs FOLDER HAIRIS CHROMIUM RENDER [TESTS]. Prints its figures, and fails with what is wrong.
 import { chromium } from 'playwright-core';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, readdirSync, statSync } from 'node:fs';
@@ -10,7 +10,7 @@ import { exr, radiance } from './maps.mjs';
 import { serve } from './serve.mjs';
 import { three } from './three.mjs';
 
-const [folder, hairis, executablePath] = process.argv.slice(2);
+const [folder, hairis, executablePath, render, tests] = process.argv.slice(2);
 // Times are bounds for an idle machine, and are printed beside what was measured. A check fails at four times as much: machines of CI
 // may be busy, or run at half their speed.
 const MOST_BYTES = 250_000,
@@ -475,9 +475,9 @@ async function example() {
 }
 
 const all = { sizes, times, sliders, values, comparison, albedos, states, links, views, tuft, example, three };
-for (const name of process.argv[5]?.split(',') ?? Object.keys(all)) {
+for (const name of tests?.split(',') ?? Object.keys(all)) {
   try {
-    await all[name]({ open, check, chromium, executablePath, address, evaluate });
+    await all[name]({ open, check, chromium, executablePath, address, evaluate, render, folder });
   } catch (error) {
     check(name, false, error.stack);
   }

@@ -8,7 +8,7 @@ import { sky } from './sky.js';
 const $ = id => document.getElementById(id);
 /// A head has some 100,000 hairs. The file has fewer, which are as much thicker.
 const WIDER = 4;
-const state = { lines: false, azimuth: 40, elevation: 35, sun: 3, sky: 0.5, shadows: true };
+const state = { lines: false, azimuth: 40, elevation: 35, sun: 6, sky: 0.8, shadows: true };
 
 /// The page's scene, for the console and for tests.
 const page = (globalThis.hairis = { THREE, Crossings, Hairis, Strands, lines, ribbons, state, sky, frames: 0, pending: 0, isStale: true, isBusy: false });

@@ -1,5 +1,7 @@
 // Tests of the three.js example, which harness/page/tests/page.mjs runs beside those of the page.
 import { createHash } from 'node:crypto';
+import { readFileSync } from 'node:fs';
+import { basename, join } from 'node:path';
 import { paths } from './paths.mjs';
 
 /// A browser whose canvas shows what WebGPU draws in software.
@@ -92,7 +94,7 @@ async function draw({ SCENE, RADIUS, SIDE, EYE, FOV, SUN, TURN, model, values, l
   return { pixels, forward: forward.value.toArray() };
 }
 
-export async function three({ chromium, executablePath, address, check, evaluate, render }) {
+export async function three({ chromium, executablePath, address, check, evaluate, render, folder }) {
   const browser = await chromium.launch({ executablePath, args: ARGUMENTS });
   const open = async (path, viewport) => {
     const page = await browser.newPage({ viewport });
@@ -114,6 +116,7 @@ export async function three({ chromium, executablePath, address, check, evaluate
   await shadows(page, check);
   await page.close();
   await panel(open, drawn, check);
+  await readme(browser, { address, check, folder });
   await paths({ open, check, render });
   await browser.close();
 }
@@ -345,4 +348,39 @@ async function panel(open, drawn, check) {
     await page.close();
   }
   console.log('three.js: 1280 and 390 pixels, panel, lines and shadows');
+}
+
+/// The lines of the README, in a scene of their own with the three.js of npm: something is drawn.
+async function readme(browser, { address, check, folder }) {
+  const page = await browser.newPage(),
+    [, lines] = readFileSync(new URL('three.md', import.meta.url), 'utf8').match(/```js\n(.*?)```/s),
+    at = `${address}three/`;
+  page.on('pageerror', error => check('the lines of the README throw no error', false, error.message));
+  await page.route(`${at}node/*`, route => route.fulfill({ path: join(folder, '../three-build/node_modules/three/build', basename(route.request().url())), contentType: 'text/javascript' }));
+  await page.route(`${at}hairis/*`, route => route.fulfill({ path: join(folder, basename(route.request().url())) }));
+  await page.route(`${at}readme.html`, route =>
+    route.fulfill({
+      contentType: 'text/html',
+      body: `<script type="importmap">{ "imports": { "three/webgpu": "./node/three.webgpu.js", "three/tsl": "./node/three.tsl.js" } }</script>
+        <script type="module">import * as THREE from 'three/webgpu'; Object.assign(globalThis, { THREE, scene: new THREE.Scene() });</script>
+        <script type="module">${lines}; globalThis.isDone = true;</script>`,
+    }),
+  );
+  await page.goto(`${at}readme.html`);
+  await page.waitForFunction(() => globalThis.isDone, null, { timeout: 60_000 });
+  const lit = await page.evaluate(async () => {
+    const renderer = new THREE.WebGPURenderer(),
+      camera = new THREE.PerspectiveCamera(30, 1, 1, 500),
+      target = new THREE.RenderTarget(48, 48, { type: THREE.FloatType });
+    await renderer.init();
+    camera.position.set(30, 0, 90);
+    camera.lookAt(0, 0, 0);
+    renderer.setRenderTarget(target);
+    renderer.render(scene, camera);
+    const pixels = await renderer.readRenderTargetPixelsAsync(target, 0, 0, 48, 48);
+    return pixels.filter((x, i) => i % 4 === 0 && x > 1e-3).length;
+  });
+  check('the lines of the README draw hair', lit > 100, `${lit}`);
+  console.log(`three.js: the lines of the README draw ${lit} pixels of hair`);
+  await page.close();
 }
