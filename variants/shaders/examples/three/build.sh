@@ -10,6 +10,7 @@ out=$target/page/three work=$target/three-build
 [ -e "$target/page/hairis.wasm" ] || exec "$root/harness/page/build.sh" "$@"
 mkdir -p "$out" "$work"
 cp package.json "$work"
+cp package.json "$out"
 npm install --silent --no-audit --no-fund --no-package-lock --prefix "$work"
 web=$root/harness/page/web
 cat "$web"/{kernel,light,inputs,fields}.js src/panel.js > "$work/page.js"
@@ -31,10 +32,7 @@ for file in "$target"/page/*.wgsl; do
   name=$(basename "$file" .wgsl)
   [[ $name == *.paths ]] || "${shader[@]}" --target wgsl --model "$name" --call eval_sample_hit | sed '/^ *\/\//d' > "$target/page/$name.paths.wgsl"
 done
-if [ ! -e "$work/groom.hair" ]; then
-  render=("${RENDER:-}")
-  [ -n "${RENDER:-}" ] || render=(cargo run -q --release --locked --manifest-path "$root/Cargo.toml" -p hairis-render --)
-  "${render[@]}" render straight --strands 5000 --size 8x8 --spp 1 --out "$work/groom.exr" --export "$work/groom.hair" > /dev/null
-fi
-cp "$work/groom.hair" "$out"
+render=("${RENDER:-}")
+[ -n "${RENDER:-}" ] || render=(cargo run -q --release --locked --manifest-path "$root/Cargo.toml" -p hairis-render --)
+"${render[@]}" render straight --strands 5000 --size 8x8 --spp 1 --out "$work/groom.exr" --export "$out/groom.hair" > /dev/null
 for file in hairis-three.js example.js paths.js; do echo "$file has $(wc -c < "$out/$file") bytes, $(gzip -c "$out/$file" | wc -c) compressed"; done

@@ -21,6 +21,7 @@ export class HairMaterial extends NodeMaterial {
   constructor(hairis, source, material, { light = null, environment = null, crossings = null, lines = false, leastWidth = 1 } = {}) {
     super();
     this.hairis = hairis;
+    this.model = material.model;
     this.light = light;
     this.environment = environment;
     const hit = hitFunction(source),
@@ -65,6 +66,7 @@ export class HairMaterial extends NodeMaterial {
   /// Sets the parameters: `{ model, word, values }` as the module describes them, with fields by the names of `hairis eval`. The model must
   /// be that of the material. Throws an error that names a value which is refused.
   set(material) {
+    if (material.model !== this.model) throw new Error(`model must be ${this.model}, that of the material, got ${material.model}`);
     const { kernel } = this.hairis,
       refusal = kernel.setMaterial(0, material);
     if (refusal) throw new Error(refusal);
