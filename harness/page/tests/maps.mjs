@@ -3,9 +3,8 @@ import { deflateSync } from 'node:zlib';
 
 /// An OpenEXR map of scanlines, red, green and blue in half precision, in blocks that ZIP compresses or none does. `bits` returns a number of a
 /// block: by default some are 1.0, which is 0x3c00, and the others 0.5, which is 0x3800. In a row, all blue numbers come first and red ones last.
-export function exr(isZip, bits = i => (i % 5 ? 0x3800 : 0x3c00)) {
-  const [width, height] = [32, 16],
-    attribute = (name, type, body) => Buffer.concat([Buffer.from(`${name}\0${type}\0`), int(body.length), body]);
+export function exr(isZip, bits = i => (i % 5 ? 0x3800 : 0x3c00), [width, height] = [32, 16]) {
+  const attribute = (name, type, body) => Buffer.concat([Buffer.from(`${name}\0${type}\0`), int(body.length), body]);
   const int = (...numbers) => Buffer.from(Int32Array.from(numbers).buffer);
   const channels = Buffer.concat([
     ...['B', 'G', 'R'].map(name => Buffer.concat([Buffer.from(`${name}\0`), int(1, 0, 1, 1)])),

@@ -23,6 +23,12 @@ export class Crossings {
     this.fillAround();
   }
 
+  /// Crossings that a strand of radius 1 across the light adds to places on itself, which do not count: it crosses its cell as 2 r l / A, a
+  /// place counts half of that, and keeps three quarters where it is interpolated between cells, in the mean over places in a cell.
+  get own() {
+    return (0.75 * this.size) / this.side;
+  }
+
   /// Red of the texture: crossings towards `light`, a unit vector in the space of the strands. Does nothing for the same light.
   update(light) {
     if (this.light.distanceToSquared(light) < 1e-12) return;

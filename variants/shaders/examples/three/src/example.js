@@ -1,7 +1,7 @@
 /// The example's page: hair that hairis-render has grown, under a directional light and a sky, with a panel of the model's fields.
 import * as THREE from 'three/webgpu';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { buttons, check, fill, materialPanel, newMaterial, refuse, slider } from '#page';
+import { buttons, check, fill, materialPanel, newMaterial, readLight, refuse, slider } from '#page';
 import { Crossings, Hairis, Strands, lines, ribbons, sphereOf } from './library.js';
 import { sky } from './sky.js';
 
@@ -11,7 +11,7 @@ const WIDER = 4;
 const state = { lines: false, azimuth: 40, elevation: 35, sun: 6, sky: 0.8, shadows: true };
 
 /// The page's scene, for the console and for tests.
-const page = (globalThis.hairis = { THREE, Crossings, Hairis, Strands, lines, ribbons, state, sky, frames: 0, pending: 0, isStale: true, isBusy: false });
+const page = (globalThis.hairis = { THREE, Crossings, Hairis, Strands, lines, readLight, ribbons, state, sky, frames: 0, pending: 0, isStale: true, isBusy: false });
 
 async function start() {
   if (!navigator.gpu) throw new Error('This browser has no WebGPU');

@@ -34,17 +34,19 @@ export function ribbons(strands) {
 export function lines(strands) {
   const geometry = new BufferGeometry(),
     { nodes, tangents, count } = strands;
-  const [places, directions] = [new Float32Array(6 * count), new Float32Array(6 * count)];
+  const [places, directions, radii] = [6, 6, 2].map(width => new Float32Array(width * count));
   let at = 0;
   strands.segments(node => {
     for (const end of [node, node + 1]) {
       places.set(nodes.subarray(4 * end, 4 * end + 3), at);
       directions.set(tangents.subarray(3 * end, 3 * end + 3), at);
+      radii[at / 3] = nodes[4 * end + 3];
       at += 3;
     }
   });
   geometry.setAttribute('position', new Float32BufferAttribute(places, 3));
   geometry.setAttribute('tangent', new Float32BufferAttribute(directions, 3));
+  geometry.setAttribute('radius', new Float32BufferAttribute(radii, 1));
   geometry.boundingSphere = sphereOf(strands);
   return geometry;
 }

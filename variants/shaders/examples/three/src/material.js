@@ -2,10 +2,10 @@
 import { Matrix4, NodeMaterial, SphericalHarmonics3, Vector3, Vector4 } from 'three/webgpu';
 import {
   attribute, cameraPosition, cameraProjectionMatrix, cross, dot, float, mix, modelViewMatrix, modelWorldMatrix, modelWorldMatrixInverse,
-  normalize, positionGeometry, positionWorld, screenSize, texture3D, uniform, uniformArray, varying, vec3, vec4, wgsl, wgslFn,
+  normalize, positionGeometry, positionWorld, screenCoordinate, screenSize, texture3D, uniform, uniformArray, varying, vec3, vec4, wgsl, wgslFn,
 } from 'three/tsl';
 import { multiple } from './multiple.js';
-import { INCLINATIONS, OFFSETS, ROWS, place, scattering } from './scattering.js';
+import { INCLINATIONS, ROWS, place, scattering } from './scattering.js';
 import { hitFunction } from './models.js';
 
 /// Hair of one model. `Hairis.material` makes it, after it has loaded the source of the model.
@@ -34,7 +34,7 @@ export class HairMaterial extends NodeMaterial {
     const tangent = lines ? attribute('tangent', 'vec3') : mix(attribute('startTangent', 'vec3'), attribute('stopTangent', 'vec3'), positionGeometry.x),
       along = normalize(modelWorldMatrix.mul(vec4(varying(tangent), 0)).xyz),
       view = normalize(cameraPosition.sub(positionWorld));
-    const { across, pixels } = lines ? { across: float(0), pixels: float(0) } : this.widen(tangent, leastWidth),
+    const { across, pixels, radius } = lines ? { across: float(0), pixels: float(0), radius: attribute('radius', 'float') } : this.widen(tangent, leastWidth),
       direct = wgslFn(directSource(hit, model.near_field), [wgsl(source)]);
     const toLight = uniform(new Vector3(0, 1, 0)).onObjectUpdate(({ object }) => this.aim(object, crossings)),
       irradiance = uniform(new Vector3()).onObjectUpdate(() => {
@@ -48,7 +48,7 @@ export class HairMaterial extends NodeMaterial {
       rows = Array.from({ length: ROWS }, (_, row) => [0, 1].map(side => this.table.element(first.add(side).mul(ROWS).add(row).toInt()))),
       [...moments] = rows.map(([a, b]) => mix(a, b, at.sub(first)).xyz),
       factor = moments.pop();
-    const lit = direct({ ...args, view, along, across, pixels, toLight }).mul(irradiance).mul(factor),
+    const lit = direct({ ...args, view, along, across, pixels, pixel: screenCoordinate, toLight }).mul(irradiance).mul(factor),
       quadratics = [0, 1, 2].map(c => uniform(new Matrix4()).onObjectUpdate(() => quadratic(this.environment, c))),
       around = environmentFunction(...moments, ...quadratics, view, along);
 
@@ -56,9 +56,11 @@ export class HairMaterial extends NodeMaterial {
     let [behind, within] = [vec3(1), vec3(1)];
     if (crossings) {
       const local = modelWorldMatrixInverse.mul(vec4(positionWorld, 1)).xyz,
-        counts = texture3D(crossings.texture, local.sub(uniform(crossings.low)).div(crossings.side));
-      behind = dim(this.forward, counts.x).xyz;
-      within = dim(this.forward, counts.y).xyz;
+        counts = texture3D(crossings.texture, local.sub(uniform(crossings.low)).div(crossings.side)),
+        sine = cross(along, toLight).length(),
+        own = radius.mul(crossings.own);
+      behind = dim(this.forward, counts.x.sub(own.mul(sine)).max(0)).xyz;
+      within = dim(this.forward, counts.y.sub(own.mul(Math.PI / 4)).max(0)).xyz;
     }
     this.colorNode = lit.mul(behind).add(around.mul(within));
   }
@@ -77,7 +79,8 @@ export class HairMaterial extends NodeMaterial {
     this.forward.value.fromArray(forward);
   }
 
-  /// Turns quads into ribbons that face the camera. Returns the place across the ribbon, from -1 to 1 along u x v, and its width in pixels.
+  /// Turns quads into ribbons that face the camera. Returns the place across the ribbon, from -1 to 1 along u x v, its width in
+  /// pixels, and the radius of the strand.
   widen(tangent, leastWidth) {
     const node = mix(attribute('start', 'vec4'), attribute('stop', 'vec4'), positionGeometry.x),
       camera = modelWorldMatrixInverse.mul(vec4(cameraPosition, 1)).xyz,
@@ -86,7 +89,7 @@ export class HairMaterial extends NodeMaterial {
       pixel = depth.mul(2).div(cameraProjectionMatrix.element(1).y.mul(screenSize.y)).abs(),
       radius = node.w.max(pixel.mul(leastWidth / 2));
     this.positionNode = node.xyz.add(side.mul(positionGeometry.y.mul(radius)));
-    return { across: varying(positionGeometry.y), pixels: varying(radius.div(pixel).mul(2)) };
+    return { across: varying(positionGeometry.y), pixels: varying(radius.div(pixel).mul(2)), radius: varying(node.w) };
   }
 
   /// The direction towards the light, for which it brings the crossings up to date.
@@ -120,26 +123,27 @@ fn hairis_around(total: vec3f, mu: vec3f, mv: vec3f, muu: vec3f, mvv: vec3f, muv
   return max(light, vec3f());
 }`);
 
-/// Width in pixels from which a ribbon shows the hit of each pixel. Narrower ribbons show the mean over the fibre, without which pixels
-/// would sparkle.
-const NARROW = 3;
+/// Width in pixels from which a ribbon shows the hit of each pixel. Narrower ribbons and lines show the mean over the fibre, of this many
+/// offsets, one in each part of the fibre. Where in its part an offset lies depends on the pixel, because lobes are narrower than parts.
+const NARROW = 3,
+  PARTS = 4;
 
 /// S cos theta of one direction towards the light, for the constants in parameters c0, c1...
 function directSource({ call, type, places }, isNearField) {
   const count = Math.ceil(places.length / 4),
     copies = places.map((place, at) => `  hair.${place} = c${at >> 2}.${'xyzw'[at & 3]};`);
-  const value = h => `${call}(hair, wo, ${h}, wi).value`,
-    rule = OFFSETS.flatMap(([h, weight]) => [h, -h].map(offset => `vec2f(${offset}, ${weight / 2})`));
+  const value = h => `${call}(hair, wo, ${h}, wi).value`;
   // One call in a loop, because a call for each offset would be as many copies of the model.
   const mean = `
-  var rule = array<vec2f, ${rule.length}>(${rule.join(', ')});
   let isNarrow = pixels < ${NARROW}.0;
+  let parts = select(1, ${PARTS}, isNarrow);
+  let within = fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
   var sum = vec3f();
-  for (var i = 0; i < select(1, ${rule.length}, isNarrow); i++) {
-    sum += select(1.0, rule[i].y, isNarrow) * ${value('select(-across, rule[i].x, isNarrow)')};
+  for (var i = 0; i < parts; i++) {
+    sum += ${value(`select(-across, 2.0 * (f32(i) + within) / ${PARTS}.0 - 1.0, isNarrow)`)} / f32(parts);
   }`;
   return `
-fn hairis_direct(${Array.from({ length: count }, (_, i) => `c${i}: vec4f`).join(', ')}, view: vec3f, along: vec3f, across: f32, pixels: f32, toLight: vec3f) -> vec3f {
+fn hairis_direct(${Array.from({ length: count }, (_, i) => `c${i}: vec4f`).join(', ')}, view: vec3f, along: vec3f, across: f32, pixels: f32, pixel: vec2f, toLight: vec3f) -> vec3f {
   var hair: ${type};
 ${copies.join('\n')}
   let sine = dot(view, along);

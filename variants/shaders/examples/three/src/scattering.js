@@ -7,11 +7,11 @@ export const INCLINATIONS = 33;
 export const ROWS = 7;
 const FACTOR = ROWS - 1;
 
-/// Half of a rule of Gauss for the offset h in [-1, 1]; the other half mirrors it. A model of the far field needs none.
-export const OFFSETS = [
-  [0.3399810436, 0.6521451549],
-  [0.8611363116, 0.3478548451],
-];
+/// Offsets h of half a fibre with their weights; the other half mirrors it. The albedo changes as fast as sqrt(1 - h^2) at the edge, so that
+/// this is the rule of Gauss in the angle whose sine is h. A model of the far field needs none.
+const OFFSETS = [[-0.8611363116, 0.3478548451], [-0.3399810436, 0.6521451549], [0.3399810436, 0.6521451549], [0.8611363116, 0.3478548451]].map(
+  ([x, weight]) => [Math.sin((Math.PI / 4) * (1 + x)), weight * Math.cos((Math.PI / 4) * (1 + x))],
+);
 const FAR = [[0, 1]];
 
 /// Steps along and around the fibre: refined until the total is within 1% of the albedo that the kernel computes.

@@ -1,4 +1,4 @@
-// Test of the path tracer in the browser against hairis-render, on hair, a map and a camera that both have.
+// Tests against hairis-render, on hair, maps and a camera that both have: the path tracer in the browser, and direct light of three.js.
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { mkdtemp } from 'node:fs/promises';
@@ -7,20 +7,18 @@ import { join } from 'node:path';
 import { exr } from './maps.mjs';
 
 const SIDE = 48,
-  STRANDS = 160,
   NODES = 5,
-  RADIUS = 0.06,
   SPP = 128;
 
 /// A tuft of bent strands: x, y, z and radius of each node.
-function tuft() {
+function tuft(count, radius) {
   let seed = 5;
   const random = () => (seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0) / 2 ** 32;
-  return Array.from({ length: STRANDS }, () => {
+  return Array.from({ length: count }, () => {
     const [x, z, a, b] = [random() - 0.5, random() - 0.5, random() - 0.5, random() - 0.5];
     return Array.from({ length: NODES }, (_, i) => {
       const t = i / (NODES - 1);
-      return [2.4 * x + 1.6 * a * t * t, 3 * t, 2.4 * z + 1.6 * b * t * t, RADIUS * (1 - 0.5 * t)].map(Math.fround);
+      return [2.4 * x + 1.6 * a * t * t, 3 * t, 2.4 * z + 1.6 * b * t * t, radius * (1 - 0.5 * t)].map(Math.fround);
     });
   }).flat();
 }
@@ -29,7 +27,7 @@ function tuft() {
 function hairFile(nodes) {
   const head = Buffer.alloc(128);
   head.write('HAIR');
-  [STRANDS, nodes.length, 2 | 4, NODES - 1].forEach((x, i) => head.writeUInt32LE(x, 4 + 4 * i));
+  [nodes.length / NODES, nodes.length, 2 | 4, NODES - 1].forEach((x, i) => head.writeUInt32LE(x, 4 + 4 * i));
   return Buffer.concat([head, Buffer.from(Float32Array.from(nodes.flatMap(node => node.slice(0, 3))).buffer), Buffer.from(Float32Array.from(nodes, node => 2 * node[3]).buffer)]);
 }
 
@@ -44,7 +42,7 @@ const map = exr(false, (i, row) => {
 /// The means of the pictures agree within their errors, for a model of the near field and one of the far field.
 export async function paths({ open, check, render }) {
   const folder = await mkdtemp(join(tmpdir(), 'hairis-')),
-    nodes = tuft(),
+    nodes = tuft(160, 0.06),
     page = await open('three/paths.html?every=500&side=16&model=kajiya-kay', { width: 800, height: 800 });
   writeFileSync(join(folder, 'tuft.hair'), hairFile(nodes));
   writeFileSync(join(folder, 'map.exr'), map);
@@ -99,6 +97,64 @@ export async function paths({ open, check, render }) {
       }
     });
     console.log(`paths of ${model}: the mean is that of hairis-render to ${(100 * most).toFixed(2)}%, and means of quarters are ${worst.toFixed(1)} standard errors off at most`);
+  }
+  await page.close();
+}
+
+/// A map of 256 by 128 with one bright texel, which stands for a directional light.
+const SUN_ROW = 40,
+  sun = column => exr(false, (i, row) => (row === SUN_ROW && i % 256 === column ? 0x7000 : 0), [256, 128]);
+
+/// Direct light of hair in its own shadow: the mean of the picture, with shadows by crossings and by rays.
+export async function direct({ open, check, render }) {
+  const folder = await mkdtemp(join(tmpdir(), 'hairis-')),
+    nodes = tuft(600, 0.02),
+    SIDE = 128,
+    page = await open('three/?every=500&model=kajiya-kay', { width: 480, height: 480 });
+  await page.waitForFunction(() => globalThis.hairis?.frames > 0, null, { timeout: 60_000 });
+  writeFileSync(join(folder, 'tuft.hair'), hairFile(nodes));
+  // Light from behind the hair, and from before it.
+  for (const [model, column] of [['kajiya-kay', 150], ['chiang', 20]]) {
+    const out = join(folder, `${model}.exr`);
+    writeFileSync(join(folder, 'sun.exr'), sun(column));
+    execFileSync(render, ['render', 'env', '--import', join(folder, 'tuft.hair'), '--curve', 'linear', '--env', join(folder, 'sun.exr'), '--backdrop', '0', '--integrator', 'direct',
+      '--model', model, '--hair', 'brown', '--spp', '256', '--size', `${SIDE}x${SIDE}`, '--out', out], { stdio: 'ignore' });
+    const { truth, lit, open: unshadowed } = await page.evaluate(async ({ nodes, NODES, SIDE, model, picture, sun: [column, row] }) => {
+      const { THREE, Crossings, Strands, library, renderer, ribbons, readLight } = hairis,
+        strands = new Strands(Float32Array.from(nodes.flat()), Uint32Array.from({ length: nodes.length / NODES }, (_, i) => NODES * (i + 1))),
+        { low, high } = strands.box,
+        centre = low.map((x, axis) => (x + high[axis]) / 2),
+        scale = Math.hypot(...low.map((x, axis) => high[axis] - x)) / 40;
+      const edge = at => Math.cos((Math.PI * at) / 128),
+        y = (edge(row) + edge(row + 1)) / 2,
+        turn = 2 * Math.PI * ((column + 0.5) / 256 - 0.5),
+        solid = ((edge(row) - edge(row + 1)) * 2 * Math.PI) / 256,
+        light = new THREE.DirectionalLight(0xffffff, 8192 * solid),
+        camera = new THREE.PerspectiveCamera(42, 1, 0.1, 100),
+        target = new THREE.RenderTarget(SIDE, SIDE, { type: THREE.FloatType });
+      light.position.set(Math.sqrt(1 - y * y) * Math.sin(turn), y, -Math.sqrt(1 - y * y) * Math.cos(turn)).multiplyScalar(100);
+      camera.position.set(centre[0], centre[1] + 9 * scale, centre[2] + 52 * scale);
+      camera.lookAt(...centre);
+      const means = [];
+      for (const crossings of [new Crossings(strands), null]) {
+        const material = await library.material(model, 'brown', { light, crossings, leastWidth: 0 });
+        // Direct light alone: what strands scatter forward has no part in it.
+        material.forward.value.set(0, 0, 0);
+        const scene = new THREE.Scene();
+        scene.add(new THREE.Mesh(ribbons(strands), material), light, light.target);
+        renderer.setRenderTarget(target);
+        renderer.render(scene, camera);
+        renderer.setRenderTarget(null);
+        const pixels = await renderer.readRenderTargetPixelsAsync(target, 0, 0, SIDE, SIDE);
+        means.push([0, 1, 2].map(c => pixels.reduce((sum, x, at) => (at % 4 === c ? sum + x : sum), 0) / SIDE ** 2));
+      }
+      const { data } = await readLight(new File([Uint8Array.from(atob(picture), letter => letter.charCodeAt(0))], 'picture.exr'));
+      return { truth: [0, 1, 2].map(c => data.reduce((sum, x, at) => (at % 3 === c ? sum + x : sum), 0) / SIDE ** 2), lit: means[0], open: means[1] };
+    }, { nodes, NODES, SIDE, model, picture: readFileSync(out).toString('base64'), sun: [column, SUN_ROW] });
+    const errors = lit.map((value, c) => value / truth[c] - 1),
+      worst = errors.reduce((most, error) => (Math.abs(error) > Math.abs(most) ? error : most));
+    check('direct light in its own shadow is that of hairis-render', Math.abs(worst) < 0.06 && lit[0] < 0.6 * unshadowed[0], `${model}: ${lit} and ${truth}, without shadow ${unshadowed}`);
+    console.log(`three.js: direct light of ${model}, ${(unshadowed[0] / lit[0]).toFixed(1)} times as bright without shadow, is that of hairis-render to ${(100 * worst).toFixed(1)}%`);
   }
   await page.close();
 }
