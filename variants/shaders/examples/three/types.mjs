@@ -14,10 +14,14 @@ const kinds = {
 };
 const field = one => {
   const [least, most] = one.range ?? [],
-    range = one.range && (most > 1e30 ? `, at least ${least}` : `, in [${+least.toPrecision(4)}, ${+most.toPrecision(4)}]`);
-  const isOptional = one.optional || one.instead_of || models.some(({ fields }) => fields.includes(one) && fields.some(other => other.instead_of === one.name));
+    range =
+      one.range && (most > 1e30 ? `, at least ${least}` : `, in [${+least.toPrecision(4)}, ${+most.toPrecision(4)}]`);
+  const isOptional =
+    one.optional ||
+    one.instead_of ||
+    models.some(({ fields }) => fields.includes(one) && fields.some(other => other.instead_of === one.name));
   const instead = one.instead_of ? `, in place of ${one.instead_of}` : '';
-  return `    /** ${one.doc.replace(/[.]$/, "")}${one.unit && `, ${one.unit}`}${range ?? ''}${instead} */\n    ${one.name}${isOptional ? '?' : ''}: ${kinds[one.kind](one)};`;
+  return `    /** ${one.doc.replace(/[.]$/, '')}${one.unit && `, ${one.unit}`}${range ?? ''}${instead} */\n    ${one.name}${isOptional ? '?' : ''}: ${kinds[one.kind](one)};`;
 };
 
 console.log(`import type { Data3DTexture, DirectionalLight, BufferGeometry, InstancedBufferGeometry, NodeMaterial, Sphere, SphericalHarmonics3, Vector3 } from 'three/webgpu';
@@ -32,7 +36,14 @@ ${models.map(({ name, fields }) => `  '${name}': {\n${fields.map(field).join('\n
 
 /** Names of presets of each model. */
 export interface Presets {
-${models.map(({ name, presets }) => `  '${name}': ${Object.keys(presets).map(preset => `'${preset}'`).join(' | ')};`).join('\n')}
+${models
+  .map(
+    ({ name, presets }) =>
+      `  '${name}': ${Object.keys(presets)
+        .map(preset => `'${preset}'`)
+        .join(' | ')};`,
+  )
+  .join('\n')}
 }
 
 export interface Options {

@@ -3,7 +3,9 @@ import { Data3DTexture, DataUtils, HalfFloatType, LinearFilter, RGFormat, Vector
 import { sphereOf } from './geometry.js';
 
 /// Directions over which the light from all around is averaged: the axes and the diagonals of a cube.
-const AROUND = [-1, 0, 1].flatMap(x => [-1, 0, 1].flatMap(y => [-1, 0, 1].map(z => new Vector3(x, y, z)))).filter(v => v.lengthSq() & 1);
+const AROUND = [-1, 0, 1]
+  .flatMap(x => [-1, 0, 1].flatMap(y => [-1, 0, 1].map(z => new Vector3(x, y, z))))
+  .filter(v => v.lengthSq() & 1);
 
 /// Expected crossings by place. A ray that crosses a cell of cross-section A meets 2 r l sin(angle) / A strands in the mean, if a segment
 /// of radius r and length l lies in the cell; these numbers are summed along the ray, a place counts half of its own cell, and places
@@ -18,7 +20,12 @@ export class Crossings {
     this.side = 2 * radius;
     this.data = new Uint16Array(2 * size ** 3);
     this.texture = new Data3DTexture(this.data, size, size, size);
-    Object.assign(this.texture, { format: RGFormat, type: HalfFloatType, minFilter: LinearFilter, magFilter: LinearFilter });
+    Object.assign(this.texture, {
+      format: RGFormat,
+      type: HalfFloatType,
+      minFilter: LinearFilter,
+      magFilter: LinearFilter,
+    });
     this.light = new Vector3();
     this.fillAround();
   }
@@ -40,8 +47,12 @@ export class Crossings {
   /// Green of the texture: the number n that dims light from all around as its mean over directions is dimmed, exp(-n) = mean exp(-count).
   fillAround() {
     const sum = new Float32Array(this.size ** 3);
-    for (const direction of AROUND) this.along(direction.clone().normalize()).forEach((count, cell) => (sum[cell] += Math.exp(-count)));
-    sum.forEach((total, cell) => (this.data[2 * cell + 1] = DataUtils.toHalfFloat(-Math.log(total / AROUND.length))));
+    for (const direction of AROUND)
+      this.along(direction.clone().normalize()).forEach((count, cell) => (sum[cell] += Math.exp(-count)));
+    sum.forEach(
+      (total, cell) =>
+        (this.data[2 * cell + 1] = DataUtils.toHalfFloat(-Math.log(Math.max(total, 1e-30) / AROUND.length))),
+    );
     this.texture.needsUpdate = true;
   }
 
@@ -53,8 +64,12 @@ export class Crossings {
     const u = new Vector3(...(Math.abs(direction.y) < 0.9 ? [0, 1, 0] : [1, 0, 0])).cross(direction).normalize(),
       v = direction.clone().cross(u),
       middle = low.clone().addScalar(side / 2);
-    const axes = [u, v, direction].map(axis => [axis.x, axis.y, axis.z, size / 2 - axis.dot(middle) / cell, axis]);
-    const [iu, iv, id] = axes.map(([x, y, z, at]) => (p, i) => (x * p[i] + y * p[i + 1] + z * p[i + 2]) / cell + at);
+    const axes = [u, v, direction].map(axis => [axis.x, axis.y, axis.z, size / 2 - axis.dot(middle) / cell]);
+    const [iu, iv, id] = axes.map(
+      ([x, y, z, at]) =>
+        (p, i) =>
+          (x * p[i] + y * p[i + 1] + z * p[i + 2]) / cell + at,
+    );
     const bound = x => Math.max(0, Math.min(size - 1, Math.floor(x))),
       grid = new Float32Array(size ** 3);
     const point = [0, 0, 0];
@@ -82,7 +97,11 @@ export class Crossings {
     for (let z = 0, at = 0; z < size; z++)
       for (let y = 0; y < size; y++)
         for (let x = 0; x < size; x++, at++) {
-          [point[0], point[1], point[2]] = [low.x + (x + 0.5) * cell, low.y + (y + 0.5) * cell, low.z + (z + 0.5) * cell];
+          [point[0], point[1], point[2]] = [
+            low.x + (x + 0.5) * cell,
+            low.y + (y + 0.5) * cell,
+            low.z + (z + 0.5) * cell,
+          ];
           out[at] = between(grid, size, iu(point, 0) - 0.5, iv(point, 0) - 0.5, id(point, 0) - 0.5);
         }
     return out;

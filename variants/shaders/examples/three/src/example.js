@@ -11,11 +11,28 @@ const WIDER = 4;
 const state = { lines: false, azimuth: 40, elevation: 35, sun: 6, sky: 0.8, shadows: true };
 
 /// The page's scene, for the console and for tests.
-const page = (globalThis.hairis = { THREE, Crossings, Hairis, Strands, lines, readLight, ribbons, state, sky, frames: 0, pending: 0, isStale: true, isBusy: false });
+const page = (globalThis.hairis = {
+  THREE,
+  Crossings,
+  Hairis,
+  Strands,
+  lines,
+  readLight,
+  ribbons,
+  state,
+  sky,
+  frames: 0,
+  pending: 0,
+  isStale: true,
+  isBusy: false,
+});
 
 async function start() {
   if (!navigator.gpu) throw new Error('This browser has no WebGPU');
-  const [library, file] = await Promise.all([Hairis.load('../'), fetch('groom.hair').then(answer => answer.arrayBuffer())]);
+  const [library, file] = await Promise.all([
+    Hairis.load('../'),
+    fetch('groom.hair').then(answer => answer.arrayBuffer()),
+  ]);
   // `?every=20&model=gaussian`: as much hair as a driver in software draws, and the model at first. A strand stands for several.
   const query = new URLSearchParams(location.search),
     step = Number(query.get('every')) || 1,
@@ -50,7 +67,12 @@ async function start() {
         page.material?.set(given);
         return '';
       }
-      const options = { light, environment: sky(state.sky), lines: state.lines, crossings: state.shadows ? crossings : null };
+      const options = {
+        light,
+        environment: sky(state.sky),
+        lines: state.lines,
+        crossings: state.shadows ? crossings : null,
+      };
       const material = await library.material(given.model, given.values, options);
       scene.remove(hair);
       page.material?.dispose();
@@ -75,7 +97,11 @@ async function start() {
   };
   const aim = () => {
     const [a, e] = [(state.azimuth * Math.PI) / 180, (state.elevation * Math.PI) / 180];
-    light.position.copy(center).add(new THREE.Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)).multiplyScalar(4 * radius));
+    light.position
+      .copy(center)
+      .add(
+        new THREE.Vector3(Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)).multiplyScalar(4 * radius),
+      );
     light.intensity = state.sun;
     if (page.material) page.material.environment = sky(state.sky);
     page.isStale = true;
@@ -90,7 +116,15 @@ async function start() {
       number('light', 'sun', [0, 10]),
       number('sky', 'sky', [0, 2]),
       check('shadows', state.shadows, value => ((state.shadows = value), shown(given, true))),
-      buttons('Strands', [[false, 'Ribbons'], [true, 'Lines']], state.lines, value => ((state.lines = value), shown(given, true), kinds())),
+      buttons(
+        'Strands',
+        [
+          [false, 'Ribbons'],
+          [true, 'Lines'],
+        ],
+        state.lines,
+        value => ((state.lines = value), shown(given, true), kinds()),
+      ),
     );
   };
   aim();
@@ -116,7 +150,8 @@ async function start() {
     await renderer.backend.device.queue.onSubmittedWorkDone();
     page.frames++;
     page.isBusy = false;
-    $('note').textContent = `${strands.ends.length} strands, ${strands.count} segments, ${(performance.now() - begin).toFixed(0)} ms for the last frame. Shadows are means over cells of ${(crossings.side / crossings.size).toFixed(1)} cm, and light that strands pass on to each other sideways or backward is missing.`;
+    $('note').textContent =
+      `${strands.ends.length} strands, ${strands.count} segments, ${(performance.now() - begin).toFixed(0)} ms for the last frame. Shadows are means over cells of ${(crossings.side / crossings.size).toFixed(1)} cm, and light that strands pass on to each other sideways or backward is missing.`;
   });
 }
 

@@ -1,5 +1,13 @@
 /// Geometry of strands for three.js.
-import { Box3, BufferGeometry, Float32BufferAttribute, InstancedBufferAttribute, InstancedBufferGeometry, Sphere, Vector3 } from 'three/webgpu';
+import {
+  Box3,
+  BufferGeometry,
+  Float32BufferAttribute,
+  InstancedBufferAttribute,
+  InstancedBufferGeometry,
+  Sphere,
+  Vector3,
+} from 'three/webgpu';
 
 /// The sphere around the box of all strands.
 export function sphereOf(strands) {
@@ -23,7 +31,12 @@ export function ribbons(strands) {
     last.set(tangents.subarray(3 * node + 3, 3 * node + 6), 3 * at);
     at++;
   });
-  for (const [name, array, width] of [['start', starts, 4], ['stop', stops, 4], ['startTangent', first, 3], ['stopTangent', last, 3]])
+  for (const [name, array, width] of [
+    ['start', starts, 4],
+    ['stop', stops, 4],
+    ['startTangent', first, 3],
+    ['stopTangent', last, 3],
+  ])
     geometry.setAttribute(name, new InstancedBufferAttribute(array, width));
   geometry.instanceCount = count;
   geometry.boundingSphere = sphereOf(strands);

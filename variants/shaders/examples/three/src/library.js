@@ -14,7 +14,10 @@ export class Hairis extends Models {
     const description = this.description(model);
     if (typeof values === 'string') {
       const preset = description.presets[values];
-      if (!preset) throw new Error(`preset of ${model} must be one of ${Object.keys(description.presets).join(', ')}, got ${values}`);
+      if (!preset)
+        throw new Error(
+          `preset of ${model} must be one of ${Object.keys(description.presets).join(', ')}, got ${values}`,
+        );
       values = preset;
     }
     return new HairMaterial(this, await this.source(model), { model, values }, options);

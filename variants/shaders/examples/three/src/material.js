@@ -1,8 +1,29 @@
 /// Node material of hair for WebGPURenderer: generated WGSL of a model, one directional light, and light from all around.
 import { Matrix4, NodeMaterial, SphericalHarmonics3, Vector3, Vector4 } from 'three/webgpu';
 import {
-  attribute, cameraPosition, cameraProjectionMatrix, cross, dot, float, mix, modelViewMatrix, modelWorldMatrix, modelWorldMatrixInverse,
-  normalize, positionGeometry, positionWorld, screenCoordinate, screenSize, texture3D, uniform, uniformArray, varying, vec3, vec4, wgsl, wgslFn,
+  attribute,
+  cameraPosition,
+  cameraProjectionMatrix,
+  cross,
+  dot,
+  float,
+  mix,
+  modelViewMatrix,
+  modelWorldMatrix,
+  modelWorldMatrixInverse,
+  normalize,
+  positionGeometry,
+  positionWorld,
+  screenCoordinate,
+  screenSize,
+  texture3D,
+  uniform,
+  uniformArray,
+  varying,
+  vec3,
+  vec4,
+  wgsl,
+  wgslFn,
 } from 'three/tsl';
 import { multiple } from './multiple.js';
 import { INCLINATIONS, ROWS, place, scattering } from './scattering.js';
@@ -18,7 +39,12 @@ import { hitFunction } from './models.js';
 ///
 /// Materials conserve energy: where the albedo exceeds 1 for a viewer, the hair is as bright as white light around it.
 export class HairMaterial extends NodeMaterial {
-  constructor(hairis, source, material, { light = null, environment = null, crossings = null, lines = false, leastWidth = 1 } = {}) {
+  constructor(
+    hairis,
+    source,
+    material,
+    { light = null, environment = null, crossings = null, lines = false, leastWidth = 1 } = {},
+  ) {
     super();
     this.hairis = hairis;
     this.model = material.model;
@@ -26,29 +52,45 @@ export class HairMaterial extends NodeMaterial {
     this.environment = environment;
     const hit = hitFunction(source),
       model = hairis.kernel.model(material.model);
-    this.constants = uniformArray(Array.from({ length: Math.ceil(hit.places.length / 4) }, () => new Vector4()), 'vec4');
-    this.table = uniformArray(Array.from({ length: INCLINATIONS * ROWS }, () => new Vector4()), 'vec4');
+    this.constants = uniformArray(
+      Array.from({ length: Math.ceil(hit.places.length / 4) }, () => new Vector4()),
+      'vec4',
+    );
+    this.table = uniformArray(
+      Array.from({ length: INCLINATIONS * ROWS }, () => new Vector4()),
+      'vec4',
+    );
     this.forward = uniform(new Vector3());
     this.set(material);
 
-    const tangent = lines ? attribute('tangent', 'vec3') : mix(attribute('startTangent', 'vec3'), attribute('stopTangent', 'vec3'), positionGeometry.x),
+    const tangent = lines
+        ? attribute('tangent', 'vec3')
+        : mix(attribute('startTangent', 'vec3'), attribute('stopTangent', 'vec3'), positionGeometry.x),
       along = normalize(modelWorldMatrix.mul(vec4(varying(tangent), 0)).xyz),
       view = normalize(cameraPosition.sub(positionWorld));
-    const { across, pixels, radius } = lines ? { across: float(0), pixels: float(0), radius: attribute('radius', 'float') } : this.widen(tangent, leastWidth),
+    const { across, pixels, radius } = lines
+        ? { across: float(0), pixels: float(0), radius: attribute('radius', 'float') }
+        : this.widen(tangent, leastWidth),
       direct = wgslFn(directSource(hit, model.near_field), [wgsl(source)]);
     const toLight = uniform(new Vector3(0, 1, 0)).onObjectUpdate(({ object }) => this.aim(object, crossings)),
       irradiance = uniform(new Vector3()).onObjectUpdate(() => {
         const { light } = this;
-        return light ? new Vector3(light.color.r, light.color.g, light.color.b).multiplyScalar(light.intensity) : new Vector3();
+        return light
+          ? new Vector3(light.color.r, light.color.g, light.color.b).multiplyScalar(light.intensity)
+          : new Vector3();
       });
     const args = Object.fromEntries(this.constants.array.map((_, i) => [`c${i}`, this.constants.element(i)]));
     // Two neighbours in the table, and the place between them.
     const at = wgslFn(place)({ sine: dot(view, along) }),
       first = at.floor().min(INCLINATIONS - 2),
-      rows = Array.from({ length: ROWS }, (_, row) => [0, 1].map(side => this.table.element(first.add(side).mul(ROWS).add(row).toInt()))),
+      rows = Array.from({ length: ROWS }, (_, row) =>
+        [0, 1].map(side => this.table.element(first.add(side).mul(ROWS).add(row).toInt())),
+      ),
       [...moments] = rows.map(([a, b]) => mix(a, b, at.sub(first)).xyz),
       factor = moments.pop();
-    const lit = direct({ ...args, view, along, across, pixels, pixel: screenCoordinate, toLight }).mul(irradiance).mul(factor),
+    const lit = direct({ ...args, view, along, across, pixels, pixel: screenCoordinate, toLight })
+        .mul(irradiance)
+        .mul(factor),
       quadratics = [0, 1, 2].map(c => uniform(new Matrix4()).onObjectUpdate(() => quadratic(this.environment, c))),
       around = environmentFunction(...moments, ...quadratics, view, along);
 
@@ -68,7 +110,8 @@ export class HairMaterial extends NodeMaterial {
   /// Sets the parameters: `{ model, word, values }` as the module describes them, with fields by the names of `hairis eval`. The model must
   /// be that of the material. Throws an error that names a value which is refused.
   set(material) {
-    if (material.model !== this.model) throw new Error(`model must be ${this.model}, that of the material, got ${material.model}`);
+    if (material.model !== this.model)
+      throw new Error(`model must be ${this.model}, that of the material, got ${material.model}`);
     const { kernel } = this.hairis,
       refusal = kernel.setMaterial(0, material);
     if (refusal) throw new Error(refusal);
@@ -97,7 +140,10 @@ export class HairMaterial extends NodeMaterial {
     const { light } = this,
       direction = new Vector3(0, 1, 0);
     if (!light) return direction;
-    direction.setFromMatrixPosition(light.matrixWorld).sub(new Vector3().setFromMatrixPosition(light.target.matrixWorld)).normalize();
+    direction
+      .setFromMatrixPosition(light.matrixWorld)
+      .sub(new Vector3().setFromMatrixPosition(light.target.matrixWorld))
+      .normalize();
     crossings?.update(direction.clone().transformDirection(new Matrix4().copy(object.matrixWorld).invert()));
     return direction;
   }

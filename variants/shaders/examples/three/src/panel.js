@@ -30,23 +30,41 @@ function materialPanel(loaded, material, shown, rows = () => []) {
         current = presets.find(name => !material.artist && isSame(model.presets[name], material.values));
       fill(
         $('material'),
-        choice('model', kernel.models.map(({ name }) => ({ value: name })), material.model, name => {
-          material = newMaterial(kernel.model(name));
-          build();
-          shown(given(material), true);
-        }),
-        choice('preset', [...(current ? [] : [{ value: '', text: 'edited' }]), ...presets.map(value => ({ value }))], current ?? '', name => {
-          if (!name) return;
-          Object.assign(material, { values: structuredClone(model.presets[name]), artist: null });
-          build();
-          changed();
-        }),
+        choice(
+          'model',
+          kernel.models.map(({ name }) => ({ value: name })),
+          material.model,
+          name => {
+            material = newMaterial(kernel.model(name));
+            build();
+            shown(given(material), true);
+          },
+        ),
+        choice(
+          'preset',
+          [...(current ? [] : [{ value: '', text: 'edited' }]), ...presets.map(value => ({ value }))],
+          current ?? '',
+          name => {
+            if (!name) return;
+            Object.assign(material, { values: structuredClone(model.presets[name]), artist: null });
+            build();
+            changed();
+          },
+        ),
         model.artist &&
-          buttons('Terms', [[false, 'Parameters'], [true, 'Artist’s controls']], Boolean(material.artist), wanted => {
-            kernel.setMaterial(0, material);
-            if (wanted) material.artist = kernel.toArtist(0);
-            else Object.assign(material, { values: kernel.readValues(model), artist: null });
-          }),
+          buttons(
+            'Terms',
+            [
+              [false, 'Parameters'],
+              [true, 'Artist’s controls'],
+            ],
+            Boolean(material.artist),
+            wanted => {
+              kernel.setMaterial(0, material);
+              if (wanted) material.artist = kernel.toArtist(0);
+              else Object.assign(material, { values: kernel.readValues(model), artist: null });
+            },
+          ),
         ...materialRows(material),
         ...rows(),
       );
@@ -56,4 +74,19 @@ function materialPanel(loaded, material, shown, rows = () => []) {
   return shown(given(material), true);
 }
 
-export { Environment, Kernel, buttons, check, choice, direction, fill, make, materialPanel, newMaterial, readLight, refuse, skyLight, slider, toSrgb };
+export {
+  Kernel,
+  buttons,
+  check,
+  choice,
+  direction,
+  fill,
+  make,
+  materialPanel,
+  newMaterial,
+  readLight,
+  refuse,
+  skyLight,
+  slider,
+  toSrgb,
+};

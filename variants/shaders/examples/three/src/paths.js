@@ -1,5 +1,5 @@
 /// The page of the path tracer: the hair of the example under a map of light, one sample of each pixel after the other.
-import { Environment, fill, make, materialPanel, newMaterial, readLight, refuse, skyLight, slider, toSrgb } from '#page';
+import { fill, make, materialPanel, newMaterial, readLight, refuse, skyLight, slider, toSrgb } from '#page';
 import { Models } from './models.js';
 import { scattering } from './scattering.js';
 import { Strands } from './strands.js';
@@ -12,10 +12,13 @@ const $ = id => document.getElementById(id),
   WIDER = 4;
 const state = { around: 0.55, up: 0.12, distance: 3.4, exposure: 0, light: 'sky' };
 /// The page's tracer, for the console and for tests.
-const page = (globalThis.hairis = { Environment, Models, Strands, Tracer, readLight, scattering, state, tracer: null, steps: 0 });
+const page = (globalThis.hairis = { Models, Strands, Tracer, readLight, scattering, state, tracer: null, steps: 0 });
 
 async function start() {
-  const [models, file] = await Promise.all([Models.load('../'), fetch('groom.hair').then(answer => answer.arrayBuffer())]);
+  const [models, file] = await Promise.all([
+    Models.load('../'),
+    fetch('groom.hair').then(answer => answer.arrayBuffer()),
+  ]);
   // `?every=20&model=gaussian&side=96`: as much hair as a driver in software traces, the model at first, and pixels along each side.
   const query = new URLSearchParams(location.search),
     step = Number(query.get('every')) || 1,
@@ -25,7 +28,13 @@ async function start() {
     { low, high } = strands.box,
     centre = low.map((x, axis) => (x + high[axis]) / 2),
     radius = Math.hypot(...low.map((x, axis) => high[axis] - x)) / 2;
-  const canvas = make('canvas', { width: side, height: side, tabindex: 0, role: 'img', 'aria-label': 'Hair; drag or use the arrow keys to turn it' }),
+  const canvas = make('canvas', {
+      width: side,
+      height: side,
+      tabindex: 0,
+      role: 'img',
+      'aria-label': 'Hair; drag or use the arrow keys to turn it',
+    }),
     context = canvas.getContext('2d', { alpha: false }),
     image = context.createImageData(side, side);
   $('view').append(canvas);
@@ -36,7 +45,9 @@ async function start() {
     time = 0;
   const restart = () => {
     const { around, up, distance } = state,
-      eye = [Math.sin(around) * Math.cos(up), Math.sin(up), Math.cos(around) * Math.cos(up)].map((x, axis) => centre[axis] + distance * radius * x);
+      eye = [Math.sin(around) * Math.cos(up), Math.sin(up), Math.cos(around) * Math.cos(up)].map(
+        (x, axis) => centre[axis] + distance * radius * x,
+      );
     tracer.setView({ eye, at: centre, slope: Math.tan(Math.PI / 12), backdrop: [0.02, 0.022, 0.025] }, side);
     tracer.restart();
     page.steps = 0;
@@ -83,7 +94,8 @@ async function start() {
         if (now === generation) show(sums);
       }
       page.steps = tracer.steps;
-      $('note').textContent = `${strands.ends.length} strands, ${strands.count} segments; ${tracer.steps} of ${MOST_STEPS} samples of each pixel, ${time.toFixed(0)} ms for one. Paths of any length.`;
+      $('note').textContent =
+        `${strands.ends.length} strands, ${strands.count} segments; ${tracer.steps} of ${MOST_STEPS} samples of each pixel, ${time.toFixed(0)} ms for one. Paths of any length.`;
     }
     requestAnimationFrame(go);
   }
@@ -97,17 +109,26 @@ async function start() {
     if (event.buttons & 1) turn(-event.movementX * 0.01, event.movementY * 0.01);
   });
   canvas.addEventListener('pointerdown', event => canvas.setPointerCapture(event.pointerId));
-  canvas.addEventListener('wheel', event => {
-    event.preventDefault();
-    state.distance = Math.max(1.2, Math.min(12, state.distance * Math.exp(event.deltaY * 0.001)));
-    restart();
-  }, { passive: false });
+  canvas.addEventListener(
+    'wheel',
+    event => {
+      event.preventDefault();
+      state.distance = Math.max(1.2, Math.min(12, state.distance * Math.exp(event.deltaY * 0.001)));
+      restart();
+    },
+    { passive: false },
+  );
   canvas.addEventListener('keydown', event => {
     const by = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1] }[event.key];
     if (by) event.preventDefault();
     if (by) turn(...by);
   });
-  const input = make('input', { type: 'file', accept: '.hdr,.exr', 'aria-label': 'Light map, Radiance or OpenEXR', hidden: true });
+  const input = make('input', {
+    type: 'file',
+    accept: '.hdr,.exr',
+    'aria-label': 'Light map, Radiance or OpenEXR',
+    hidden: true,
+  });
   input.addEventListener('change', async () => {
     const [file] = input.files;
     try {
@@ -120,7 +141,13 @@ async function start() {
   });
   fill(
     $('light'),
-    slider({ label: 'exposure', unit: 'EV', range: [-4, 4], get: () => state.exposure, set: value => ((state.exposure = value), sums && show(sums), '') }),
+    slider({
+      label: 'exposure',
+      unit: 'EV',
+      range: [-4, 4],
+      get: () => state.exposure,
+      set: value => ((state.exposure = value), sums && show(sums), ''),
+    }),
     make(
       'div',
       { class: 'bar' },

@@ -9,9 +9,12 @@ const FACTOR = ROWS - 1;
 
 /// Offsets h of half a fibre with their weights; the other half mirrors it. The albedo changes as fast as sqrt(1 - h^2) at the edge, so that
 /// this is the rule of Gauss in the angle whose sine is h. A model of the far field needs none.
-const OFFSETS = [[-0.8611363116, 0.3478548451], [-0.3399810436, 0.6521451549], [0.3399810436, 0.6521451549], [0.8611363116, 0.3478548451]].map(
-  ([x, weight]) => [Math.sin((Math.PI / 4) * (1 + x)), weight * Math.cos((Math.PI / 4) * (1 + x))],
-);
+const OFFSETS = [
+  [-0.8611363116, 0.3478548451],
+  [-0.3399810436, 0.6521451549],
+  [0.3399810436, 0.6521451549],
+  [0.8611363116, 0.3478548451],
+].map(([x, weight]) => [Math.sin((Math.PI / 4) * (1 + x)), weight * Math.cos((Math.PI / 4) * (1 + x))]);
 const FAR = [[0, 1]];
 
 /// Steps along and around the fibre: refined until the total is within 1% of the albedo that the kernel computes.
@@ -53,11 +56,19 @@ export function scattering(kernel, material) {
   for (let step = 0; step < INCLINATIONS; step++) {
     const theta = Math.max(-89.5, Math.min(89.5, 180 * (step / (INCLINATIONS - 1) - 0.5))),
       by = Math.cos((theta * Math.PI) / 180) ** 2,
-      views = offsets.map(([h, weight]) => ({ share: weight / weights, ...oneView(kernel, index, model.lobes.length, { theta, h }) })),
+      views = offsets.map(([h, weight]) => ({
+        share: weight / weights,
+        ...oneView(kernel, index, model.lobes.length, { theta, h }),
+      })),
       mean = pick => views.reduce((sum, view) => sum + view.share * pick(view), 0);
     norm += by;
     for (let c = 0; c < 3; c++) {
-      const factor = 1 / Math.max(1, mean(({ sums }) => sums[0][c])),
+      const factor =
+          1 /
+          Math.max(
+            1,
+            mean(({ sums }) => sums[0][c]),
+          ),
         at = 4 * ROWS * step + c;
       for (let row = 0; row < FACTOR; row++) table[at + 4 * row] = factor * mean(({ sums }) => sums[row][c]);
       table[at + 4 * FACTOR] = factor;
@@ -68,7 +79,8 @@ export function scattering(kernel, material) {
 }
 
 /// The factors alone, four numbers by inclination.
-export const factorsOf = table => Float32Array.from({ length: 4 * INCLINATIONS }, (_, at) => table[4 * (ROWS * (at >> 2) + FACTOR) + (at & 3)]);
+export const factorsOf = table =>
+  Float32Array.from({ length: 4 * INCLINATIONS }, (_, at) => table[4 * (ROWS * (at >> 2) + FACTOR) + (at & 3)]);
 
 /// The place of an inclination between the rows of the table, in WGSL.
 export const place = `

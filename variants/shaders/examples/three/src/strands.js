@@ -73,7 +73,10 @@ function tangentsOf({ nodes, ends }) {
         for (let axis = 0; axis < 3; axis++) sum[axis] += step[axis] / length;
       }
       const length = Math.hypot(...sum) || 1;
-      tangents.set(sum.map(x => x / length), 3 * node);
+      tangents.set(
+        sum.map(x => x / length),
+        3 * node,
+      );
     }
     first = end;
   }
@@ -107,7 +110,8 @@ function readHair(buffer) {
   }
   if (end !== points) throw fail(`its strands have ${end} points, its header says ${points}`);
   for (let point = 0; point < points; point++) {
-    for (let axis = 0; axis < 3; axis++) nodes[4 * point + axis] = view.getFloat32(places + 12 * point + 4 * axis, true);
+    for (let axis = 0; axis < 3; axis++)
+      nodes[4 * point + axis] = view.getFloat32(places + 12 * point + 4 * axis, true);
     nodes[4 * point + 3] = (widths < 0 ? thickness : view.getFloat32(widths + 4 * point, true)) / 2;
   }
   if (!nodes.every(Number.isFinite)) throw fail('a number in it is not finite');

@@ -14,7 +14,8 @@ export class Tracer {
     const { STORAGE } = GPUBufferUsage,
       { boxes, segments } = buildTree(strands),
       tangents = new Float32Array((4 * strands.tangents.length) / 3);
-    for (let at = 0; at < strands.tangents.length / 3; at++) tangents.set(strands.tangents.subarray(3 * at, 3 * at + 3), 4 * at);
+    for (let at = 0; at < strands.tangents.length / 3; at++)
+      tangents.set(strands.tangents.subarray(3 * at, 3 * at + 3), 4 * at);
     tracer.hair = [strands.nodes, tangents, segments, boxes].map(data => tracer.buffer(data, STORAGE));
     tracer.sample = 0;
     tracer.pipelines = {};
@@ -22,7 +23,10 @@ export class Tracer {
   }
 
   buffer(data, usage) {
-    const buffer = this.device.createBuffer({ size: Math.max(16, data.byteLength), usage: usage | GPUBufferUsage.COPY_DST });
+    const buffer = this.device.createBuffer({
+      size: Math.max(16, data.byteLength),
+      usage: usage | GPUBufferUsage.COPY_DST,
+    });
     this.device.queue.writeBuffer(buffer, 0, data);
     return buffer;
   }
@@ -33,11 +37,18 @@ export class Tracer {
     const { call, type } = hitFunction(text, '_eval_sample_hit');
     this.pipelines[call] ??= this.device.createComputePipelineAsync({
       layout: 'auto',
-      compute: { module: this.device.createShaderModule({ code: text + place + source.replaceAll('CALL', call).replaceAll('MATERIAL', type) }), entryPoint: 'draw' },
+      compute: {
+        module: this.device.createShaderModule({
+          code: text + place + source.replaceAll('CALL', call).replaceAll('MATERIAL', type),
+        }),
+        entryPoint: 'draw',
+      },
     });
     const pipeline = await this.pipelines[call];
     this.material?.forEach(buffer => buffer.destroy());
-    this.material = [constants, table ? factorsOf(table) : new Float32Array(8).fill(1)].map(data => this.buffer(data, GPUBufferUsage.STORAGE));
+    this.material = [constants, table ? factorsOf(table) : new Float32Array(8).fill(1)].map(data =>
+      this.buffer(data, GPUBufferUsage.STORAGE),
+    );
     this.pipeline = pipeline;
   }
 
@@ -65,13 +76,19 @@ export class Tracer {
     const forward = unit(minus(at, eye)),
       right = unit(cross(forward, [0, 1, 0])),
       up = cross(right, forward);
-    Object.assign(this, { side, view: { eye, right: right.map(x => x * slope), up: up.map(x => x * slope), forward, backdrop } });
+    Object.assign(this, {
+      side,
+      view: { eye, right: right.map(x => x * slope), up: up.map(x => x * slope), forward, backdrop },
+    });
   }
 
   /// Forgets all samples.
   restart() {
     this.picture?.destroy();
-    this.picture = this.device.createBuffer({ size: 16 * this.side ** 2, usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_SRC });
+    this.picture = this.device.createBuffer({
+      size: 16 * this.side ** 2,
+      usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_SRC,
+    });
     this.steps = 0;
   }
 
@@ -82,7 +99,9 @@ export class Tracer {
     for (let i = 0; i < count; i++) {
       const floats = new Float32Array(20),
         ints = new Uint32Array(floats.buffer);
-      [view.eye, view.right, view.up, view.forward, view.backdrop].forEach((vector, row) => floats.set(vector, 4 * row));
+      [view.eye, view.right, view.up, view.forward, view.backdrop].forEach((vector, row) =>
+        floats.set(vector, 4 * row),
+      );
       [this.sample++, side, map.width, map.height].forEach((x, row) => (ints[4 * row + 3] = x));
       groups.push(this.buffer(floats, GPUBufferUsage.UNIFORM));
     }
@@ -90,10 +109,16 @@ export class Tracer {
     for (const scene of groups) {
       const pass = encoder.beginComputePass();
       pass.setPipeline(this.pipeline);
-      pass.setBindGroup(0, device.createBindGroup({
-        layout: this.pipeline.getBindGroupLayout(0),
-        entries: [scene, ...this.hair, map.buffer, ...this.material, this.picture].map((buffer, binding) => ({ binding, resource: { buffer } })),
-      }));
+      pass.setBindGroup(
+        0,
+        device.createBindGroup({
+          layout: this.pipeline.getBindGroupLayout(0),
+          entries: [scene, ...this.hair, map.buffer, ...this.material, this.picture].map((buffer, binding) => ({
+            binding,
+            resource: { buffer },
+          })),
+        }),
+      );
       pass.dispatchWorkgroups(Math.ceil(side ** 2 / 64));
       pass.end();
     }

@@ -51,7 +51,9 @@ export function buildTree(strands) {
         }
     }
     if (cut === begin || cut === end) {
-      const axis = [0, 1, 2].reduce((most, next) => (box[3 + next] - box[next] > box[3 + most] - box[most] ? next : most));
+      const axis = [0, 1, 2].reduce((most, next) =>
+        box[3 + next] - box[next] > box[3 + most] - box[most] ? next : most,
+      );
       order.subarray(begin, end).sort((a, b) => middle(a, axis) - middle(b, axis));
       cut = (begin + end) >> 1;
     }

@@ -28,7 +28,11 @@ function hairFile(nodes) {
   const head = Buffer.alloc(128);
   head.write('HAIR');
   [nodes.length / NODES, nodes.length, 2 | 4, NODES - 1].forEach((x, i) => head.writeUInt32LE(x, 4 + 4 * i));
-  return Buffer.concat([head, Buffer.from(Float32Array.from(nodes.flatMap(node => node.slice(0, 3))).buffer), Buffer.from(Float32Array.from(nodes, node => 2 * node[3]).buffer)]);
+  return Buffer.concat([
+    head,
+    Buffer.from(Float32Array.from(nodes.flatMap(node => node.slice(0, 3))).buffer),
+    Buffer.from(Float32Array.from(nodes, node => 2 * node[3]).buffer),
+  ]);
 }
 
 /// A dim map of 32 by 16, bluer to the left, with a lamp high on the left and a redder one low behind. Half 0x4900 is 10, 0x4500 is 5.
@@ -46,43 +50,109 @@ export async function paths({ open, check, render }) {
     page = await open('three/paths.html?every=500&side=16&model=kajiya-kay', { width: 800, height: 800 });
   writeFileSync(join(folder, 'tuft.hair'), hairFile(nodes));
   writeFileSync(join(folder, 'map.exr'), map);
-  await page.waitForFunction(() => globalThis.hairis?.steps > 4 || document.getElementById('refusal').textContent, null, { timeout: 60_000 });
-  check('the path tracer starts', (await page.locator('#refusal').textContent()) === '', await page.locator('#refusal').textContent());
-  for (const [model, preset] of [['chiang', 'default'], ['gaussian', 'brown']]) {
+  await page.waitForFunction(
+    () => globalThis.hairis?.steps > 4 || document.getElementById('refusal').textContent,
+    null,
+    { timeout: 60_000 },
+  );
+  check(
+    'the path tracer starts',
+    (await page.locator('#refusal').textContent()) === '',
+    await page.locator('#refusal').textContent(),
+  );
+  for (const [model, preset] of [
+    ['chiang', 'default'],
+    ['gaussian', 'brown'],
+  ]) {
     const out = join(folder, `${model}.exr`);
-    execFileSync(render, ['render', 'env', '--import', join(folder, 'tuft.hair'), '--curve', 'linear', '--env', join(folder, 'map.exr'), '--backdrop', '0', '--integrator', 'path',
-      '--model', model, '--hair', preset, '--spp', `${16 * SPP}`, '--size', `${SIDE}x${SIDE}`, '--out', out], { stdio: 'ignore' });
-    const { truth, sums } = await page.evaluate(async ({ nodes, NODES, SIDE, model, preset, SPP, map, picture }) => {
-      const { Strands, Tracer, models, readLight } = hairis,
-        file = (name, bytes) => new File([Uint8Array.from(atob(bytes), letter => letter.charCodeAt(0))], name),
-        strands = new Strands(Float32Array.from(nodes.flat()), Uint32Array.from({ length: nodes.length / NODES }, (_, i) => NODES * (i + 1))),
-        { low, high } = strands.box,
-        centre = low.map((x, axis) => (x + high[axis]) / 2),
-        scale = Math.hypot(...low.map((x, axis) => high[axis] - x)) / 40;
-      const tracer = await Tracer.start(strands),
-        { kernel } = models;
-      const refusal = kernel.setMaterial(0, { model, values: models.presets(model)[preset] });
-      if (refusal) throw new Error(refusal);
-      await tracer.setMaterial(await models.source(model, '.paths.wgsl'), kernel.work[0].slice(0, kernel.calls.constants(0)));
-      tracer.setMap(await readLight(file('map.exr', map)));
-      // The camera of hairis-render for hair from a file.
-      tracer.setView({ eye: [centre[0], centre[1] + 9 * scale, centre[2] + 52 * scale], at: centre, slope: Math.tan((21 * Math.PI) / 180) }, SIDE);
-      const sums = [];
-      for (let batch = 0; batch < 8; batch++) {
-        tracer.restart();
-        for (let i = 0; i < SPP / 8; i++) await tracer.step();
-        sums.push(Array.from(await tracer.read()));
-      }
-      return { truth: Array.from((await readLight(file('picture.exr', picture))).data), sums };
-    }, { nodes, NODES, SIDE, model, preset, SPP, map: map.toString('base64'), picture: readFileSync(out).toString('base64') });
+    execFileSync(
+      render,
+      [
+        'render',
+        'env',
+        '--import',
+        join(folder, 'tuft.hair'),
+        '--curve',
+        'linear',
+        '--env',
+        join(folder, 'map.exr'),
+        '--backdrop',
+        '0',
+        '--integrator',
+        'path',
+        '--model',
+        model,
+        '--hair',
+        preset,
+        '--spp',
+        `${16 * SPP}`,
+        '--size',
+        `${SIDE}x${SIDE}`,
+        '--out',
+        out,
+      ],
+      { stdio: 'ignore' },
+    );
+    const { truth, sums } = await page.evaluate(
+      async ({ nodes, NODES, SIDE, model, preset, SPP, map, picture }) => {
+        const { Strands, Tracer, models, readLight } = hairis,
+          file = (name, bytes) => new File([Uint8Array.from(atob(bytes), letter => letter.charCodeAt(0))], name),
+          strands = new Strands(
+            Float32Array.from(nodes.flat()),
+            Uint32Array.from({ length: nodes.length / NODES }, (_, i) => NODES * (i + 1)),
+          ),
+          { low, high } = strands.box,
+          centre = low.map((x, axis) => (x + high[axis]) / 2),
+          scale = Math.hypot(...low.map((x, axis) => high[axis] - x)) / 40;
+        const tracer = await Tracer.start(strands),
+          { kernel } = models;
+        const refusal = kernel.setMaterial(0, { model, values: models.presets(model)[preset] });
+        if (refusal) throw new Error(refusal);
+        await tracer.setMaterial(
+          await models.source(model, '.paths.wgsl'),
+          kernel.work[0].slice(0, kernel.calls.constants(0)),
+        );
+        tracer.setMap(await readLight(file('map.exr', map)));
+        // The camera of hairis-render for hair from a file.
+        tracer.setView(
+          {
+            eye: [centre[0], centre[1] + 9 * scale, centre[2] + 52 * scale],
+            at: centre,
+            slope: Math.tan((21 * Math.PI) / 180),
+          },
+          SIDE,
+        );
+        const sums = [];
+        for (let batch = 0; batch < 8; batch++) {
+          tracer.restart();
+          for (let i = 0; i < SPP / 8; i++) await tracer.step();
+          sums.push(Array.from(await tracer.read()));
+        }
+        return { truth: Array.from((await readLight(file('picture.exr', picture))).data), sums };
+      },
+      {
+        nodes,
+        NODES,
+        SIDE,
+        model,
+        preset,
+        SPP,
+        map: map.toString('base64'),
+        picture: readFileSync(out).toString('base64'),
+      },
+    );
     // Means of the picture and of its quarters, by channel.
     let [worst, most] = [0, 0];
-    const quarters = [() => true, ...[0, 1, 2, 3].map(quarter => pixel => (pixel % SIDE < SIDE / 2) + 2 * (pixel < (SIDE * SIDE) / 2) === quarter)];
+    const quarters = [
+      () => true,
+      ...[0, 1, 2, 3].map(quarter => pixel => (pixel % SIDE < SIDE / 2) + 2 * (pixel < (SIDE * SIDE) / 2) === quarter),
+    ];
     quarters.forEach((isIn, part) => {
       for (let c = 0; c < 3; c++) {
         const mean = value => {
           let [total, count] = [0, 0];
-          for (let pixel = 0; pixel < SIDE * SIDE; pixel++) if (isIn(pixel)) [total, count] = [total + value(pixel), count + 1];
+          for (let pixel = 0; pixel < SIDE * SIDE; pixel++)
+            if (isIn(pixel)) [total, count] = [total + value(pixel), count + 1];
           return total / count;
         };
         const batches = sums.map(picture => mean(pixel => picture[4 * pixel + c] / picture[4 * pixel + 3])),
@@ -93,10 +163,16 @@ export async function paths({ open, check, render }) {
           distance = Math.abs(own - expected) / (error * Math.sqrt(1 + 1 / 16));
         if (!part) most = Math.max(most, Math.abs(own / expected - 1));
         worst = Math.max(worst, distance);
-        check('paths have the mean of hairis-render', own > 0 && error < 0.05 * own && distance < 6, `${model}, part ${part}, channel ${c}: ${own} ± ${error} and ${expected}`);
+        check(
+          'paths have the mean of hairis-render',
+          own > 0 && error < 0.05 * own && distance < 6,
+          `${model}, part ${part}, channel ${c}: ${own} ± ${error} and ${expected}`,
+        );
       }
     });
-    console.log(`paths of ${model}: the mean is that of hairis-render to ${(100 * most).toFixed(2)}%, and means of quarters are ${worst.toFixed(1)} standard errors off at most`);
+    console.log(
+      `paths of ${model}: the mean is that of hairis-render to ${(100 * most).toFixed(2)}%, and means of quarters are ${worst.toFixed(1)} standard errors off at most`,
+    );
   }
   await page.close();
 }
@@ -114,47 +190,100 @@ export async function direct({ open, check, render }) {
   await page.waitForFunction(() => globalThis.hairis?.frames > 0, null, { timeout: 60_000 });
   writeFileSync(join(folder, 'tuft.hair'), hairFile(nodes));
   // Light from behind the hair, and from before it.
-  for (const [model, column] of [['kajiya-kay', 150], ['chiang', 20]]) {
+  for (const [model, column] of [
+    ['kajiya-kay', 150],
+    ['chiang', 20],
+  ]) {
     const out = join(folder, `${model}.exr`);
     writeFileSync(join(folder, 'sun.exr'), sun(column));
-    execFileSync(render, ['render', 'env', '--import', join(folder, 'tuft.hair'), '--curve', 'linear', '--env', join(folder, 'sun.exr'), '--backdrop', '0', '--integrator', 'direct',
-      '--model', model, '--hair', 'brown', '--spp', '256', '--size', `${SIDE}x${SIDE}`, '--out', out], { stdio: 'ignore' });
-    const { truth, lit, open: unshadowed } = await page.evaluate(async ({ nodes, NODES, SIDE, model, picture, sun: [column, row] }) => {
-      const { THREE, Crossings, Strands, library, renderer, ribbons, readLight } = hairis,
-        strands = new Strands(Float32Array.from(nodes.flat()), Uint32Array.from({ length: nodes.length / NODES }, (_, i) => NODES * (i + 1))),
-        { low, high } = strands.box,
-        centre = low.map((x, axis) => (x + high[axis]) / 2),
-        scale = Math.hypot(...low.map((x, axis) => high[axis] - x)) / 40;
-      const edge = at => Math.cos((Math.PI * at) / 128),
-        y = (edge(row) + edge(row + 1)) / 2,
-        turn = 2 * Math.PI * ((column + 0.5) / 256 - 0.5),
-        solid = ((edge(row) - edge(row + 1)) * 2 * Math.PI) / 256,
-        light = new THREE.DirectionalLight(0xffffff, 8192 * solid),
-        camera = new THREE.PerspectiveCamera(42, 1, 0.1, 100),
-        target = new THREE.RenderTarget(SIDE, SIDE, { type: THREE.FloatType });
-      light.position.set(Math.sqrt(1 - y * y) * Math.sin(turn), y, -Math.sqrt(1 - y * y) * Math.cos(turn)).multiplyScalar(100);
-      camera.position.set(centre[0], centre[1] + 9 * scale, centre[2] + 52 * scale);
-      camera.lookAt(...centre);
-      const means = [];
-      for (const crossings of [new Crossings(strands), null]) {
-        const material = await library.material(model, 'brown', { light, crossings, leastWidth: 0 });
-        // Direct light alone: what strands scatter forward has no part in it.
-        material.forward.value.set(0, 0, 0);
-        const scene = new THREE.Scene();
-        scene.add(new THREE.Mesh(ribbons(strands), material), light, light.target);
-        renderer.setRenderTarget(target);
-        renderer.render(scene, camera);
-        renderer.setRenderTarget(null);
-        const pixels = await renderer.readRenderTargetPixelsAsync(target, 0, 0, SIDE, SIDE);
-        means.push([0, 1, 2].map(c => pixels.reduce((sum, x, at) => (at % 4 === c ? sum + x : sum), 0) / SIDE ** 2));
-      }
-      const { data } = await readLight(new File([Uint8Array.from(atob(picture), letter => letter.charCodeAt(0))], 'picture.exr'));
-      return { truth: [0, 1, 2].map(c => data.reduce((sum, x, at) => (at % 3 === c ? sum + x : sum), 0) / SIDE ** 2), lit: means[0], open: means[1] };
-    }, { nodes, NODES, SIDE, model, picture: readFileSync(out).toString('base64'), sun: [column, SUN_ROW] });
+    execFileSync(
+      render,
+      [
+        'render',
+        'env',
+        '--import',
+        join(folder, 'tuft.hair'),
+        '--curve',
+        'linear',
+        '--env',
+        join(folder, 'sun.exr'),
+        '--backdrop',
+        '0',
+        '--integrator',
+        'direct',
+        '--model',
+        model,
+        '--hair',
+        'brown',
+        '--spp',
+        '256',
+        '--size',
+        `${SIDE}x${SIDE}`,
+        '--out',
+        out,
+      ],
+      { stdio: 'ignore' },
+    );
+    const {
+      truth,
+      lit,
+      open: unshadowed,
+    } = await page.evaluate(
+      async ({ nodes, NODES, SIDE, model, picture, sun: [column, row] }) => {
+        const { THREE, Crossings, Strands, library, renderer, ribbons, readLight } = hairis,
+          strands = new Strands(
+            Float32Array.from(nodes.flat()),
+            Uint32Array.from({ length: nodes.length / NODES }, (_, i) => NODES * (i + 1)),
+          ),
+          { low, high } = strands.box,
+          centre = low.map((x, axis) => (x + high[axis]) / 2),
+          scale = Math.hypot(...low.map((x, axis) => high[axis] - x)) / 40;
+        const edge = at => Math.cos((Math.PI * at) / 128),
+          y = (edge(row) + edge(row + 1)) / 2,
+          turn = 2 * Math.PI * ((column + 0.5) / 256 - 0.5),
+          solid = ((edge(row) - edge(row + 1)) * 2 * Math.PI) / 256,
+          light = new THREE.DirectionalLight(0xffffff, 8192 * solid),
+          camera = new THREE.PerspectiveCamera(42, 1, 0.1, 100),
+          target = new THREE.RenderTarget(SIDE, SIDE, { type: THREE.FloatType });
+        light.position
+          .set(Math.sqrt(1 - y * y) * Math.sin(turn), y, -Math.sqrt(1 - y * y) * Math.cos(turn))
+          .multiplyScalar(100);
+        camera.position.set(centre[0], centre[1] + 9 * scale, centre[2] + 52 * scale);
+        camera.lookAt(...centre);
+        const means = [];
+        for (const crossings of [new Crossings(strands), null]) {
+          const material = await library.material(model, 'brown', { light, crossings, leastWidth: 0 });
+          // Direct light alone: what strands scatter forward has no part in it.
+          material.forward.value.set(0, 0, 0);
+          const scene = new THREE.Scene();
+          scene.add(new THREE.Mesh(ribbons(strands), material), light, light.target);
+          renderer.setRenderTarget(target);
+          renderer.render(scene, camera);
+          renderer.setRenderTarget(null);
+          const pixels = await renderer.readRenderTargetPixelsAsync(target, 0, 0, SIDE, SIDE);
+          means.push([0, 1, 2].map(c => pixels.reduce((sum, x, at) => (at % 4 === c ? sum + x : sum), 0) / SIDE ** 2));
+        }
+        const { data } = await readLight(
+          new File([Uint8Array.from(atob(picture), letter => letter.charCodeAt(0))], 'picture.exr'),
+        );
+        return {
+          truth: [0, 1, 2].map(c => data.reduce((sum, x, at) => (at % 3 === c ? sum + x : sum), 0) / SIDE ** 2),
+          lit: means[0],
+          open: means[1],
+        };
+      },
+      { nodes, NODES, SIDE, model, picture: readFileSync(out).toString('base64'), sun: [column, SUN_ROW] },
+    );
     const errors = lit.map((value, c) => value / truth[c] - 1),
       worst = errors.reduce((most, error) => (Math.abs(error) > Math.abs(most) ? error : most));
-    check('direct light in its own shadow is that of hairis-render', Math.abs(worst) < 0.06 && lit[0] < 0.6 * unshadowed[0], `${model}: ${lit} and ${truth}, without shadow ${unshadowed}`);
-    console.log(`three.js: direct light of ${model}, ${(unshadowed[0] / lit[0]).toFixed(1)} times as bright without shadow, is that of hairis-render to ${(100 * worst).toFixed(1)}%`);
+    check(
+      'direct light in its own shadow is that of hairis-render',
+      Math.abs(worst) < 0.06 && lit[0] < 0.6 * unshadowed[0],
+      `${model}: ${lit} and ${truth}, without shadow ${unshadowed}`,
+    );
+    console.log(
+      `three.js: direct light of ${model}, ${(unshadowed[0] / lit[0]).toFixed(1)} times as bright without shadow, is that of hairis-render to ${(100 * worst).toFixed(1)}%`,
+    );
   }
   await page.close();
 }

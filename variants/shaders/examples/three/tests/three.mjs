@@ -3,116 +3,83 @@ import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
 import { direct, paths } from './paths.mjs';
+import {
+  EYE,
+  FOV,
+  RADIUS,
+  SCENE,
+  SIDE,
+  SNAPPED,
+  SUN,
+  TURN,
+  cross,
+  dot,
+  draw,
+  frameOf,
+  hitOf,
+  local,
+  radiance,
+  random,
+  rayOf,
+  sum,
+  unit,
+} from './scene.mjs';
 
 /// A browser whose canvas shows what WebGPU draws in software.
-const ARGUMENTS = ['--no-sandbox', '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan', '--use-angle=vulkan', '--use-vulkan=swiftshader', '--ignore-gpu-blocklist'];
-
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-const sum = (a, b, t = 1) => a.map((x, i) => x + t * b[i]);
-const unit = a => a.map(x => x / Math.hypot(...a));
-const random = seed => () => {
-  seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
-  return seed / 2 ** 32;
-};
-
-/// The frame of a hit on a strand: u along it, v towards the viewer.
-function frameOf(along, view) {
-  const v = unit(sum(view, along, -dot(view, along)));
-  return [along, v, cross(along, v)];
-}
-const local = (frame, a) => frame.map(axis => dot(axis, a));
-
-/// Corners of ribbons that a driver in software moves, in pixels: to the next sixteenth.
-const SNAPPED = 1 / 16;
-
-/// Five straight strands side by side, each leaning its own way: what three.js draws of them is what `hairis eval` says of each pixel.
-const SIDE = 256,
-  EYE = [0.7, 0.5, 6],
-  FOV = 40,
-  RADIUS = 0.4,
-  SUN = unit([0.5, 0.7, 0.6]),
-  TURN = 0.4,
-  SCENE = Array.from({ length: 5 }, (_, i) => [[i - 2 - 0.2 * Math.sin(2 * i), -1.3, Math.sin(i)], [i - 2 + 0.25 * Math.cos(i), 1.3, Math.sin(i) + 0.9 * Math.cos(2 * i)]]);
-const turned = ([x, y, z]) => [Math.cos(TURN) * x - Math.sin(TURN) * y + 0.1, Math.sin(TURN) * x + Math.cos(TURN) * y - 0.1, z + 0.2];
-
-/// The ray of a pixel: rows from the top.
-function rayOf(column, row) {
-  const forward = unit(EYE.map(x => -x)),
-    right = unit(cross(forward, [0, 1, 0])),
-    up = cross(right, forward),
-    tan = Math.tan((FOV * Math.PI) / 360);
-  const [x, y] = [(2 * (column + 0.5)) / SIDE - 1, 1 - (2 * (row + 0.5)) / SIDE];
-  return unit(sum(sum(forward, right, tan * x), up, tan * y));
-}
-
-/// The strand that a ray meets well within its ribbon, with the place across it.
-function hitOf(ray) {
-  let found = null;
-  for (const ends of SCENE) {
-    const [a, b] = ends.map(turned),
-      length = Math.hypot(...sum(b, a, -1)),
-      along = unit(sum(b, a, -1)),
-      side = unit(cross(along, sum(EYE, a, -1))),
-      normal = cross(along, side),
-      t = dot(sum(a, EYE, -1), normal) / dot(ray, normal),
-      offset = sum(sum(EYE, ray, t), a, -1),
-      [across, place] = [dot(offset, side) / RADIUS, dot(offset, along) / length];
-    if (Math.abs(across) > 1.3 || place < -0.02 || place > 1.02 || (found && found.t < t)) continue;
-    found = { t, along, across, isWell: Math.abs(across) < 0.85 && place > 0.05 && place < 0.95 };
-  }
-  return found?.isWell ? found : null;
-}
-
-/// In the browser: pixels of the scene with a material, as floats in linear light, rows from the top.
-async function draw({ SCENE, RADIUS, SIDE, EYE, FOV, SUN, TURN, model, values, lines, light, harmonics }) {
-  const { THREE, library, renderer, Strands } = globalThis.hairis;
-  renderer.setAnimationLoop(null);
-  const strands = new Strands(Float32Array.from(SCENE.flatMap(ends => ends.flatMap(p => [...p, RADIUS]))), Uint32Array.from(SCENE, (_, i) => 2 * i + 2));
-  const sun = new THREE.DirectionalLight(0xffffff, light);
-  sun.color.setRGB(1, 0.8, 0.6);
-  sun.position.fromArray(SUN);
-  const environment = new THREE.SphericalHarmonics3();
-  harmonics.forEach((color, i) => environment.coefficients[i].fromArray(color));
-  const material = await library.material(model, values, { light: sun, environment, lines });
-  const mesh = lines ? new THREE.LineSegments(globalThis.hairis.lines(strands), material) : new THREE.Mesh(globalThis.hairis.ribbons(strands), material);
-  mesh.rotation.z = TURN;
-  mesh.position.set(0.1, -0.1, 0.2);
-  const scene = new THREE.Scene();
-  scene.add(mesh, sun, sun.target);
-  const camera = new THREE.PerspectiveCamera(FOV, 1, 0.1, 50);
-  camera.position.fromArray(EYE);
-  camera.lookAt(0, 0, 0);
-  const target = new THREE.RenderTarget(SIDE, SIDE, { type: THREE.FloatType });
-  renderer.setRenderTarget(target);
-  renderer.render(scene, camera);
-  renderer.setRenderTarget(null);
-  const pixels = Array.from(await renderer.readRenderTargetPixelsAsync(target, 0, 0, SIDE, SIDE));
-  const { forward } = material;
-  target.dispose();
-  // The material stays, so that others of its model have its shader.
-  return { pixels, forward: forward.value.toArray() };
-}
+const ARGUMENTS = [
+  '--no-sandbox',
+  '--enable-unsafe-webgpu',
+  '--use-webgpu-adapter=swiftshader',
+  '--enable-features=Vulkan',
+  '--use-angle=vulkan',
+  '--use-vulkan=swiftshader',
+  '--ignore-gpu-blocklist',
+];
 
 export async function three({ chromium, executablePath, address, check, evaluate, render, folder }) {
   const browser = await chromium.launch({ executablePath, args: ARGUMENTS });
   const open = async (path, viewport) => {
     const page = await browser.newPage({ viewport });
-    page.on('console', message => check('the console of three.js has no error', !['error', 'warning'].includes(message.type()), message.text()));
+    page.on('console', message =>
+      check('the console of three.js has no error', !['error', 'warning'].includes(message.type()), message.text()),
+    );
     page.on('pageerror', error => check('three.js throws no error', false, `${error.message} ${error.stack}`));
-    page.on('request', request => check('nothing is loaded from elsewhere', request.url().startsWith(address) || request.url().startsWith('blob:'), request.url()));
+    page.on('request', request =>
+      check(
+        'nothing is loaded from elsewhere',
+        request.url().startsWith(address) || request.url().startsWith('blob:'),
+        request.url(),
+      ),
+    );
     await page.goto(address + path);
     return page;
   };
-  const drawn = page => page.waitForFunction(() => globalThis.hairis?.frames > 0 || document.getElementById('refusal').textContent, null, { timeout: 90_000 });
+  const drawn = page =>
+    page.waitForFunction(() => globalThis.hairis?.frames > 0 || document.getElementById('refusal').textContent, null, {
+      timeout: 90_000,
+    });
 
   const page = await open('three/?every=500&model=kajiya-kay', { width: 480, height: 800 });
   await drawn(page);
   const given = { SCENE, RADIUS, SIDE, EYE, FOV, SUN, TURN, lines: false, light: 2, harmonics: [] };
   // The last presets but one are black, and the first of some return more light than arrives.
-  const presets = await page.evaluate(() => hairis.library.models.map(model => Object.values(hairis.library.presets(model)).map(values => ({ model, values }))));
-  await values(page, presets.map(list => list.at(-2)), given, check, evaluate);
-  await environments(page, presets.map(list => list[0]), given, check, evaluate);
+  const presets = await page.evaluate(() =>
+    hairis.library.models.map(model => Object.values(hairis.library.presets(model)).map(values => ({ model, values }))),
+  );
+  await values(
+    page,
+    presets.map(list => list.at(-2)),
+    given,
+    check,
+    evaluate,
+  );
+  await environments(
+    page,
+    presets.map(list => list[0]),
+    given,
+    check,
+    evaluate,
+  );
   await shadows(page, check);
   await page.close();
   await panel(open, drawn, check);
@@ -143,11 +110,18 @@ async function values(page, materials, given, check, evaluate) {
             hit = hitOf(ray);
           // Lines are one pixel wide, so that their pixels are near the axes.
           if (!hit || !(pixels[at + 3] > 0) || (row * 7 + column * 3) % (lines ? 3 : 211)) continue;
-          const frame = frameOf(hit.along, ray.map(x => -x)),
+          const frame = frameOf(
+              hit.along,
+              ray.map(x => -x),
+            ),
             [wo, wi] = [ray.map(x => -x), SUN].map(a => local(frame, a));
           shown.push({ color: pixels.slice(at, at + 3), cosine: Math.hypot(wi[1], wi[2]) });
           const moved = (SNAPPED * 2 * hit.t * Math.tan((FOV * Math.PI) / 360)) / (RADIUS * SIDE),
-            offsets = !near ? [undefined] : lines ? OFFSETS.map(([h]) => h) : [-1, 0, 1].map(step => step * moved - hit.across);
+            offsets = !near
+              ? [undefined]
+              : lines
+                ? OFFSETS.map(([h]) => h)
+                : [-1, 0, 1].map(step => step * moved - hit.across);
           requests.push(...offsets.map(h => ({ model, params: values, wo, wi, ...(near && { h }) })));
         }
       const answers = evaluate(requests),
@@ -165,16 +139,32 @@ async function values(page, materials, given, check, evaluate) {
             means[1] += seen.reduce((total, s, j) => total + OFFSETS[j][1] * s, 0);
             return;
           }
-          if (!lines) [count, worst, widest] = [count + 1, Math.max(worst, error), Math.max(widest, (high - low) / (high + 0.01 * peak))];
+          if (!lines)
+            [count, worst, widest] = [
+              count + 1,
+              Math.max(worst, error),
+              Math.max(widest, (high - low) / (high + 0.01 * peak)),
+            ];
           // A pixel of a line is up to half a pixel from the axis, where the ribbon shows the direction of its own pixel.
-          check('pixels are those of hairis eval', error < (lines ? 0.02 : 2e-3), `${model}${lines ? ', lines' : ''}: ${value} and ${seen}`);
+          check(
+            'pixels are those of hairis eval',
+            error < (lines ? 0.02 : 2e-3),
+            `${model}${lines ? ', lines' : ''}: ${value} and ${seen}`,
+          );
         }),
       );
       // The offsets of a line differ by pixel, so that means over pixels agree.
-      if (lines && near) check('lines have the mean over the fibre', Math.abs(means[0] / means[1] - 1) < 0.05, `${model}: ${means}, ${shown.length} pixels`);
+      if (lines && near)
+        check(
+          'lines have the mean over the fibre',
+          Math.abs(means[0] / means[1] - 1) < 0.05,
+          `${model}: ${means}, ${shown.length} pixels`,
+        );
     }
   }
-  console.log(`three.js: ${count} numbers of pixels are those of hairis eval, to ${worst.toExponential(1)} where corners lie within 1/16 of a pixel, which is ${(100 * widest).toFixed(1)}% of a number at most`);
+  console.log(
+    `three.js: ${count} numbers of pixels are those of hairis eval, to ${worst.toExponential(1)} where corners lie within 1/16 of a pixel, which is ${(100 * widest).toFixed(1)}% of a number at most`,
+  );
 }
 
 /// Light from all around: quadratures of `hairis eval`, and no more than arrives.
@@ -182,7 +172,13 @@ async function environments(page, materials, given, check, evaluate) {
   const next = random(3),
     white = [[3.5449077, 3.5449077, 3.5449077]],
     uneven = [...white, ...Array.from({ length: 8 }, () => [0, 1, 2].map(() => 0.5 * (next() - 0.5)))];
-  const clear = materials.filter(({ model }) => model === 'chiang').slice(0, 1).map(({ model, values: { sigma_a, color, melanin, ...rest } }) => ({ model, values: { ...rest, sigma_a: [0, 0, 0] } }));
+  const clear = materials
+    .filter(({ model }) => model === 'chiang')
+    .slice(0, 1)
+    .map(({ model, values: { sigma_a, color, melanin, ...rest } }) => ({
+      model,
+      values: { ...rest, sigma_a: [0, 0, 0] },
+    }));
   let [top, scaled] = [0, false];
   for (const { model, values } of [...materials, ...clear]) {
     const { pixels } = await page.evaluate(draw, { ...given, light: 0, harmonics: white, model, values });
@@ -192,16 +188,28 @@ async function environments(page, materials, given, check, evaluate) {
   check('hair without absorption returns what arrives', top > 0.97, `${top}`);
   let worst = 0;
   for (const { model, values } of materials.filter(({ model }) => ['gaussian', 'chiang'].includes(model))) {
-    const [around, lit] = [[0, uneven], [2, []]].map(([light, harmonics]) => page.evaluate(draw, { ...given, light, harmonics, model, values }));
+    const [around, lit] = [
+      [0, uneven],
+      [2, []],
+    ].map(([light, harmonics]) => page.evaluate(draw, { ...given, light, harmonics, model, values }));
     const pictures = [(await around).pixels, (await lit).pixels];
-    for (const [column, row] of [[100, 140], [160, 100]]) {
+    for (const [column, row] of [
+      [100, 140],
+      [160, 100],
+    ]) {
       // The next pixel to the right that shows a strand.
       let place = [column, row];
       while (!hitOf(rayOf(...place))) place = [place[0] + 1, row];
       const ray = rayOf(...place),
         hit = hitOf(ray),
-        frame = frameOf(hit.along, ray.map(x => -x)),
-        wo = local(frame, ray.map(x => -x)),
+        frame = frameOf(
+          hit.along,
+          ray.map(x => -x),
+        ),
+        wo = local(
+          frame,
+          ray.map(x => -x),
+        ),
         [rows, columns] = [32, 64],
         near = model === 'chiang',
         wi = local(frame, SUN),
@@ -212,7 +220,18 @@ async function environments(page, materials, given, check, evaluate) {
             phi = 2 * Math.PI * ((j + 0.5) / columns - 0.5),
             cos = Math.cos(theta),
             wi = [Math.sin(theta), cos * Math.cos(phi), cos * Math.sin(phi)],
-            light = radiance(uneven, sum(sum(frame[0].map(x => x * wi[0]), frame[1], wi[1]), frame[2], wi[2]));
+            light = radiance(
+              uneven,
+              sum(
+                sum(
+                  frame[0].map(x => x * wi[0]),
+                  frame[1],
+                  wi[1],
+                ),
+                frame[2],
+                wi[2],
+              ),
+            );
           for (const [h, weight] of near ? OFFSETS : [[undefined, 1]]) {
             requests.push({ model, params: values, wo, wi, ...(near && { h }) });
             factors.push([1, ...light].map(x => (x * weight * cos * cos * 2 * Math.PI ** 2) / (rows * columns)));
@@ -221,26 +240,33 @@ async function environments(page, materials, given, check, evaluate) {
       const [{ s: direct }, ...answers] = evaluate(requests),
         at = 4 * (SIDE * place[1] + place[0]);
       for (let c = 0; c < 3; c++) {
-        const [albedo, integral] = [0, 1 + c].map(which => answers.reduce((total, { s }, i) => total + s[c] * factors[i][which], 0)),
+        const [albedo, integral] = [0, 1 + c].map(which =>
+            answers.reduce((total, { s }, i) => total + s[c] * factors[i][which], 0),
+          ),
           factor = 1 / Math.max(1, albedo),
           error = Math.abs(pictures[0][at + c] / (factor * integral) - 1),
           expected = 2 * [1, 0.8, 0.6][c] * factor * direct[c] * Math.hypot(wi[1], wi[2]);
         worst = Math.max(worst, error);
         scaled ||= factor < 0.9;
-        check('light from all around is the integral', error < 0.01, `${model} ${place}: ${pictures[0][at + c]} and ${factor * integral}`);
+        check(
+          'light from all around is the integral',
+          error < 0.01,
+          `${model} ${place}: ${pictures[0][at + c]} and ${factor * integral}`,
+        );
         // Of the near field, corners of ribbons move the offset.
-        if (!near) check('direct light is scaled alike', Math.abs(pictures[1][at + c] / expected - 1) < 0.01, `${model} ${place}: ${pictures[1][at + c]} and ${expected}`);
+        if (!near)
+          check(
+            'direct light is scaled alike',
+            Math.abs(pictures[1][at + c] / expected - 1) < 0.01,
+            `${model} ${place}: ${pictures[1][at + c]} and ${expected}`,
+          );
       }
     }
   }
   check('a material is scaled', scaled);
-  console.log(`three.js: light from all around is the integral of hairis eval to ${(100 * worst).toFixed(1)}%, and white light stays white`);
-}
-
-/// Radiance of spherical harmonics in a direction, by their definition.
-function radiance(harmonics, [x, y, z]) {
-  const basis = [0.282095, 0.488603 * y, 0.488603 * z, 0.488603 * x, 1.092548 * x * y, 1.092548 * y * z, 0.315392 * (3 * z * z - 1), 1.092548 * x * z, 0.546274 * (x * x - y * y)];
-  return [0, 1, 2].map(c => basis.reduce((total, value, i) => total + value * harmonics[i][c], 0));
+  console.log(
+    `three.js: light from all around is the integral of hairis eval to ${(100 * worst).toFixed(1)}%, and white light stays white`,
+  );
 }
 
 /// Crossings are the strands that rays meet, as a mean; what they dim has the colour of the forward albedo.
@@ -254,17 +280,26 @@ async function shadows(page, check) {
       return [-0.4, 0.4].map(t => sum(middle, lean, t));
     });
   const places = Array.from({ length: 400 }, () => [0, 1, 2].map(() => 2 * (next() - 0.5)));
-  const counts = await page.evaluate(({ SCENE, RADIUS, sun, places }) => {
-    const { THREE, Crossings, Strands } = hairis,
-      nodes = Float32Array.from(SCENE.flatMap(ends => ends.flatMap(p => [...p, RADIUS])));
-    const crossings = new Crossings(new Strands(nodes, Uint32Array.from(SCENE, (_, i) => 2 * i + 2)), 32);
-    crossings.update(new THREE.Vector3(...sun));
-    const { low, side, size, data } = crossings;
-    return places.map(p => {
-      const [x, y, z] = p.map((v, axis) => Math.floor(((v - low.getComponent(axis)) / side) * size));
-      return THREE.DataUtils.fromHalfFloat(data[2 * (x + size * (y + size * z))]);
-    });
-  }, { SCENE, RADIUS, sun, places });
+  const counts = await page.evaluate(
+    ({ SCENE, RADIUS, sun, places }) => {
+      const { THREE, Crossings, Strands } = hairis,
+        nodes = Float32Array.from(SCENE.flatMap(ends => ends.flatMap(p => [...p, RADIUS])));
+      const crossings = new Crossings(
+        new Strands(
+          nodes,
+          Uint32Array.from(SCENE, (_, i) => 2 * i + 2),
+        ),
+        32,
+      );
+      crossings.update(new THREE.Vector3(...sun));
+      const { low, side, size, data } = crossings;
+      return places.map(p => {
+        const [x, y, z] = p.map((v, axis) => Math.floor(((v - low.getComponent(axis)) / side) * size));
+        return THREE.DataUtils.fromHalfFloat(data[2 * (x + size * (y + size * z))]);
+      });
+    },
+    { SCENE, RADIUS, sun, places },
+  );
   let [met, high, low] = [0, [0, 0, 0], [0, 0, 0]];
   places.forEach((place, i) => {
     let own = 0;
@@ -274,7 +309,9 @@ async function shadows(page, check) {
         away = sum(a, place, -1);
       if (Math.abs(dot(away, normal)) > RADIUS * Math.hypot(...normal)) continue;
       // Nearest places of the strand and the ray.
-      const [s, t] = [-dot(cross(away, sun), normal), -dot(cross(away, step), normal)].map(x => x / dot(normal, normal));
+      const [s, t] = [-dot(cross(away, sun), normal), -dot(cross(away, step), normal)].map(
+        x => x / dot(normal, normal),
+      );
       if (s > 0 && s < 1 && t > 0) own++;
     }
     met += own;
@@ -285,35 +322,57 @@ async function shadows(page, check) {
   });
   const mean = counts.reduce((a, b) => a + b) / counts.length,
     error = Math.sqrt(met) / places.length;
-  check('crossings are the strands that rays meet', Math.abs(mean - met / places.length) < 3.5 * error, `${mean} and ${met / places.length}`);
-  for (const [n, cast, looked] of [high, low]) check('crossings grow with depth', Math.abs(looked - cast) < 3.5 * Math.sqrt(cast), `${looked / n} and ${cast / n}`);
-  console.log(`three.js: ${mean.toFixed(2)} crossings in the mean, and ${(met / places.length).toFixed(2)} ± ${error.toFixed(2)} by rays`);
+  check(
+    'crossings are the strands that rays meet',
+    Math.abs(mean - met / places.length) < 3.5 * error,
+    `${mean} and ${met / places.length}`,
+  );
+  for (const [n, cast, looked] of [high, low])
+    check(
+      'crossings grow with depth',
+      Math.abs(looked - cast) < 3.5 * Math.sqrt(cast),
+      `${looked / n} and ${cast / n}`,
+    );
+  console.log(
+    `three.js: ${mean.toFixed(2)} crossings in the mean, and ${(met / places.length).toFixed(2)} ± ${error.toFixed(2)} by rays`,
+  );
 
-  const { ratios, forward } = await page.evaluate(async ({ SCENE, RADIUS, sun }) => {
-    const { THREE, Crossings, Strands, library, renderer, ribbons } = hairis,
-      strands = new Strands(Float32Array.from(SCENE.flatMap(ends => ends.flatMap(p => [...p, RADIUS]))), Uint32Array.from(SCENE, (_, i) => 2 * i + 2));
-    const light = new THREE.DirectionalLight(0xffffff, 1),
-      camera = new THREE.PerspectiveCamera(40, 1, 0.1, 50),
-      target = new THREE.RenderTarget(64, 64, { type: THREE.FloatType });
-    light.position.set(...sun);
-    camera.position.set(0, 0, 6);
-    const pictures = [];
-    let forward;
-    for (const crossings of [null, new Crossings(strands)]) {
-      const material = await library.material('kajiya-kay', { kd: [0.5, 0.3, 0.1], ks: [0, 0, 0], exponent: 10 }, { light, crossings }),
-        scene = new THREE.Scene();
-      scene.add(new THREE.Mesh(ribbons(strands), material), light, light.target);
-      renderer.setRenderTarget(target);
-      renderer.render(scene, camera);
-      renderer.setRenderTarget(null);
-      pictures.push(await renderer.readRenderTargetPixelsAsync(target, 0, 0, 64, 64));
-      forward = material.forward.value.toArray();
-    }
-    const ratios = [];
-    for (let at = 0; at < pictures[0].length; at += 4)
-      if (pictures[0][at + 3] > 0 && pictures[0][at + 2] > 1e-4) ratios.push([0, 1, 2].map(c => Math.log(pictures[1][at + c] / pictures[0][at + c])));
-    return { ratios, forward };
-  }, { SCENE, RADIUS, sun });
+  const { ratios, forward } = await page.evaluate(
+    async ({ SCENE, RADIUS, sun }) => {
+      const { THREE, Crossings, Strands, library, renderer, ribbons } = hairis,
+        strands = new Strands(
+          Float32Array.from(SCENE.flatMap(ends => ends.flatMap(p => [...p, RADIUS]))),
+          Uint32Array.from(SCENE, (_, i) => 2 * i + 2),
+        );
+      const light = new THREE.DirectionalLight(0xffffff, 1),
+        camera = new THREE.PerspectiveCamera(40, 1, 0.1, 50),
+        target = new THREE.RenderTarget(64, 64, { type: THREE.FloatType });
+      light.position.set(...sun);
+      camera.position.set(0, 0, 6);
+      const pictures = [];
+      let forward;
+      for (const crossings of [null, new Crossings(strands)]) {
+        const material = await library.material(
+            'kajiya-kay',
+            { kd: [0.5, 0.3, 0.1], ks: [0, 0, 0], exponent: 10 },
+            { light, crossings },
+          ),
+          scene = new THREE.Scene();
+        scene.add(new THREE.Mesh(ribbons(strands), material), light, light.target);
+        renderer.setRenderTarget(target);
+        renderer.render(scene, camera);
+        renderer.setRenderTarget(null);
+        pictures.push(await renderer.readRenderTargetPixelsAsync(target, 0, 0, 64, 64));
+        forward = material.forward.value.toArray();
+      }
+      const ratios = [];
+      for (let at = 0; at < pictures[0].length; at += 4)
+        if (pictures[0][at + 3] > 0 && pictures[0][at + 2] > 1e-4)
+          ratios.push([0, 1, 2].map(c => Math.log(pictures[1][at + c] / pictures[0][at + c])));
+      return { ratios, forward };
+    },
+    { SCENE, RADIUS, sun },
+  );
   const total = [0, 1, 2].map(c => ratios.reduce((a, one) => a + one[c], 0) / ratios.length);
   check('strands are in shadow', ratios.length > 500 && total[0] < -0.3, `${ratios.length}, ${total}`);
   for (const c of [1, 2]) {
@@ -327,11 +386,21 @@ async function panel(open, drawn, check) {
   for (const width of [1280, 390]) {
     const page = await open('three/?every=60&model=gaussian', { width, height: 780 });
     await drawn(page);
-    check('three.js starts', (await page.locator('#refusal').textContent()) === '', await page.locator('#refusal').textContent());
-    check('nothing is cut off', await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `three.js, ${width}`);
+    check(
+      'three.js starts',
+      (await page.locator('#refusal').textContent()) === '',
+      await page.locator('#refusal').textContent(),
+    );
+    check(
+      'nothing is cut off',
+      await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth),
+      `three.js, ${width}`,
+    );
     const picture = async () => {
       await page.waitForFunction(() => !hairis.isStale && !hairis.isBusy && !hairis.pending);
-      return createHash('sha1').update(await page.locator('#view').screenshot()).digest('hex');
+      return createHash('sha1')
+        .update(await page.locator('#view').screenshot())
+        .digest('hex');
     };
     const seen = [await picture()];
     const change = async what => {
@@ -349,7 +418,11 @@ async function panel(open, drawn, check) {
     await page.getByLabel('beta R, °').fill('14');
     await change('beta');
     await page.getByLabel('beta R, °').fill('-4');
-    check('a refusal is a sentence', (await page.locator('#refusal').textContent()).startsWith('beta[0] must be a width'), await page.locator('#refusal').textContent());
+    check(
+      'a refusal is a sentence',
+      (await page.locator('#refusal').textContent()).startsWith('beta[0] must be a width'),
+      await page.locator('#refusal').textContent(),
+    );
     await page.getByLabel('shadows').uncheck();
     await change('shadows');
     await page.getByRole('button', { name: 'Lines' }).click();
@@ -367,7 +440,12 @@ async function readme(browser, { address, check, folder }) {
     [, lines] = readFileSync(new URL('three.md', import.meta.url), 'utf8').match(/```js\n(.*?)```/s),
     at = `${address}three/`;
   page.on('pageerror', error => check('the lines of the README throw no error', false, error.message));
-  await page.route(`${at}node/*`, route => route.fulfill({ path: join(folder, '../three-build/node_modules/three/build', basename(route.request().url())), contentType: 'text/javascript' }));
+  await page.route(`${at}node/*`, route =>
+    route.fulfill({
+      path: join(folder, '../three-build/node_modules/three/build', basename(route.request().url())),
+      contentType: 'text/javascript',
+    }),
+  );
   await page.route(`${at}hairis/*`, route => route.fulfill({ path: join(folder, basename(route.request().url())) }));
   await page.route(`${at}readme.html`, route =>
     route.fulfill({
