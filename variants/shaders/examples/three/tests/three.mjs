@@ -38,8 +38,10 @@ const ARGUMENTS = [
 
 export async function three({ chromium, executablePath, address, check, evaluate, render, folder }) {
   const browser = await chromium.launch({ executablePath, args: ARGUMENTS });
-  const open = async (path, viewport) => {
+  const open = async (path, viewport, gpu = true) => {
     const page = await browser.newPage({ viewport });
+    if (!gpu)
+      await page.addInitScript(() => Object.defineProperty(Navigator.prototype, 'gpu', { get: () => undefined }));
     page.on('console', message =>
       check('the console of three.js has no error', !['error', 'warning'].includes(message.type()), message.text()),
     );
@@ -431,7 +433,14 @@ async function panel(open, drawn, check) {
     await change('model');
     await page.close();
   }
-  console.log('three.js: 1280 and 390 pixels, panel, lines and shadows');
+  for (const path of ['three/', 'three/paths.html']) {
+    const page = await open(path, { width: 800, height: 600 }, false);
+    await page.waitForFunction(() => document.getElementById('refusal').textContent);
+    const text = await page.locator('#refusal').textContent();
+    check('without WebGPU there is a sentence', text.includes('This browser has no WebGPU'), `${path}: ${text}`);
+    await page.close();
+  }
+  console.log('three.js: 1280 and 390 pixels, panel, lines and shadows, without WebGPU');
 }
 
 /// The lines of the README, in a scene of their own with the three.js of npm: something is drawn.
