@@ -129,7 +129,9 @@ export class HairMaterial extends NodeMaterial {
       camera = modelWorldMatrixInverse.mul(vec4(cameraPosition, 1)).xyz,
       side = normalize(cross(tangent, camera.sub(node.xyz))),
       depth = modelViewMatrix.mul(vec4(node.xyz, 1)).z.negate(),
-      pixel = depth.mul(2).div(cameraProjectionMatrix.element(1).y.mul(screenSize.y)).abs(),
+      // Of a mesh that is scaled, as in its own space.
+      scale = modelWorldMatrix.mul(vec4(1, 0, 0, 0)).xyz.length(),
+      pixel = depth.mul(2).div(cameraProjectionMatrix.element(1).y.mul(screenSize.y).mul(scale)).abs(),
       radius = node.w.max(pixel.mul(leastWidth / 2));
     this.positionNode = node.xyz.add(side.mul(positionGeometry.y.mul(radius)));
     return { across: varying(positionGeometry.y), pixels: varying(radius.div(pixel).mul(2)), radius: varying(node.w) };

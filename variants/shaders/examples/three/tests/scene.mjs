@@ -16,9 +16,6 @@ export function frameOf(along, view) {
 }
 export const local = (frame, a) => frame.map(axis => dot(axis, a));
 
-/// Corners of ribbons that a driver in software moves, in pixels: to the next sixteenth.
-export const SNAPPED = 1 / 16;
-
 /// Five straight strands side by side, each leaning its own way: what three.js draws of them is what `hairis eval` says of each pixel.
 export const SIDE = 256,
   EYE = [0.7, 0.5, 6],
@@ -26,15 +23,19 @@ export const SIDE = 256,
   RADIUS = 0.4,
   SUN = unit([0.5, 0.7, 0.6]),
   TURN = 0.4,
+  SCALE = 0.9,
   SCENE = Array.from({ length: 5 }, (_, i) => [
     [i - 2 - 0.2 * Math.sin(2 * i), -1.3, Math.sin(i)],
     [i - 2 + 0.25 * Math.cos(i), 1.3, Math.sin(i) + 0.9 * Math.cos(2 * i)],
   ]);
-export const turned = ([x, y, z]) => [
-  Math.cos(TURN) * x - Math.sin(TURN) * y + 0.1,
-  Math.sin(TURN) * x + Math.cos(TURN) * y - 0.1,
-  z + 0.2,
+const turned = ([x, y, z]) => [
+  SCALE * (Math.cos(TURN) * x - Math.sin(TURN) * y) + 0.1,
+  SCALE * (Math.sin(TURN) * x + Math.cos(TURN) * y) - 0.1,
+  SCALE * z + 0.2,
 ];
+
+/// What `draw` takes, but for the material.
+export const GIVEN = { SCENE, RADIUS, SIDE, EYE, FOV, SUN, TURN, SCALE, lines: false, light: 2, harmonics: [] };
 
 /// The ray of a pixel: rows from the top.
 export function rayOf(column, row) {
@@ -57,15 +58,33 @@ export function hitOf(ray) {
       normal = cross(along, side),
       t = dot(sum(a, EYE, -1), normal) / dot(ray, normal),
       offset = sum(sum(EYE, ray, t), a, -1),
-      [across, place] = [dot(offset, side) / RADIUS, dot(offset, along) / length];
+      [across, place] = [dot(offset, side) / (SCALE * RADIUS), dot(offset, along) / length];
     if (Math.abs(across) > 1.3 || place < -0.02 || place > 1.02 || (found && found.t < t)) continue;
     found = { t, along, across, isWell: Math.abs(across) < 0.85 && place > 0.05 && place < 0.95 };
   }
   return found?.isWell ? found : null;
 }
 
+/// How far the offset of a hit may be from that of its pixel, because a driver in software moves the corners of ribbons to the next
+/// sixteenth of a pixel.
+export const snappedBy = ({ t }) => (t * Math.tan((FOV * Math.PI) / 360)) / (8 * SCALE * RADIUS * SIDE);
+
 /// In the browser: pixels of the scene with a material, as floats in linear light, rows from the top.
-export async function draw({ SCENE, RADIUS, SIDE, EYE, FOV, SUN, TURN, model, values, lines, light, harmonics }) {
+export async function draw({
+  SCENE,
+  RADIUS,
+  SIDE,
+  EYE,
+  FOV,
+  SUN,
+  TURN,
+  SCALE,
+  model,
+  values,
+  lines,
+  light,
+  harmonics,
+}) {
   const { THREE, library, renderer, Strands } = globalThis.hairis;
   renderer.setAnimationLoop(null);
   const strands = new Strands(
@@ -82,6 +101,7 @@ export async function draw({ SCENE, RADIUS, SIDE, EYE, FOV, SUN, TURN, model, va
     ? new THREE.LineSegments(globalThis.hairis.lines(strands), material)
     : new THREE.Mesh(globalThis.hairis.ribbons(strands), material);
   mesh.rotation.z = TURN;
+  mesh.scale.setScalar(SCALE);
   mesh.position.set(0.1, -0.1, 0.2);
   const scene = new THREE.Scene();
   scene.add(mesh, sun, sun.target);

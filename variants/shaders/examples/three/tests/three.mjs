@@ -4,14 +4,9 @@ import { readFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
 import { direct, paths } from './paths.mjs';
 import {
-  EYE,
-  FOV,
-  RADIUS,
-  SCENE,
+  GIVEN,
   SIDE,
-  SNAPPED,
   SUN,
-  TURN,
   cross,
   dot,
   draw,
@@ -21,6 +16,7 @@ import {
   radiance,
   random,
   rayOf,
+  snappedBy,
   sum,
   unit,
 } from './scene.mjs';
@@ -63,7 +59,6 @@ export async function three({ chromium, executablePath, address, check, evaluate
 
   const page = await open('three/?every=500&model=kajiya-kay', { width: 480, height: 800 });
   await drawn(page);
-  const given = { SCENE, RADIUS, SIDE, EYE, FOV, SUN, TURN, lines: false, light: 2, harmonics: [] };
   // The last presets but one are black, and the first of some return more light than arrives.
   const presets = await page.evaluate(() =>
     hairis.library.models.map(model => Object.values(hairis.library.presets(model)).map(values => ({ model, values }))),
@@ -71,14 +66,12 @@ export async function three({ chromium, executablePath, address, check, evaluate
   await values(
     page,
     presets.map(list => list.at(-2)),
-    given,
     check,
     evaluate,
   );
   await environments(
     page,
     presets.map(list => list[0]),
-    given,
     check,
     evaluate,
   );
@@ -98,12 +91,12 @@ const OFFSETS = Array.from({ length: 32 }, (_, i) => {
 });
 
 /// Pixels under the directional light are those of `hairis eval`.
-async function values(page, materials, given, check, evaluate) {
+async function values(page, materials, check, evaluate) {
   let [count, worst, widest] = [0, 0, 0];
   for (const { model, values } of materials) {
     const { near } = await page.evaluate(model => ({ near: hairis.library.description(model).near_field }), model);
     for (const lines of [false, true]) {
-      const { pixels } = await page.evaluate(draw, { ...given, model, values, lines });
+      const { pixels } = await page.evaluate(draw, { ...GIVEN, model, values, lines });
       const [requests, shown] = [[], []];
       for (let row = 0; row < SIDE; row++)
         for (let column = 0; column < SIDE; column++) {
@@ -118,7 +111,7 @@ async function values(page, materials, given, check, evaluate) {
             ),
             [wo, wi] = [ray.map(x => -x), SUN].map(a => local(frame, a));
           shown.push({ color: pixels.slice(at, at + 3), cosine: Math.hypot(wi[1], wi[2]) });
-          const moved = (SNAPPED * 2 * hit.t * Math.tan((FOV * Math.PI) / 360)) / (RADIUS * SIDE),
+          const moved = snappedBy(hit),
             offsets = !near
               ? [undefined]
               : lines
@@ -170,7 +163,7 @@ async function values(page, materials, given, check, evaluate) {
 }
 
 /// Light from all around: quadratures of `hairis eval`, and no more than arrives.
-async function environments(page, materials, given, check, evaluate) {
+async function environments(page, materials, check, evaluate) {
   const next = random(3),
     white = [[3.5449077, 3.5449077, 3.5449077]],
     uneven = [...white, ...Array.from({ length: 8 }, () => [0, 1, 2].map(() => 0.5 * (next() - 0.5)))];
@@ -183,7 +176,7 @@ async function environments(page, materials, given, check, evaluate) {
     }));
   let [top, scaled] = [0, false];
   for (const { model, values } of [...materials, ...clear]) {
-    const { pixels } = await page.evaluate(draw, { ...given, light: 0, harmonics: white, model, values });
+    const { pixels } = await page.evaluate(draw, { ...GIVEN, light: 0, harmonics: white, model, values });
     top = pixels.reduce((most, x, at) => (at % 4 < 3 ? Math.max(most, x) : most), 0);
     check('hair returns no more than arrives', top > 0 && top <= 1 + 1e-5, `${model}: ${top}`);
   }
@@ -193,7 +186,7 @@ async function environments(page, materials, given, check, evaluate) {
     const [around, lit] = [
       [0, uneven],
       [2, []],
-    ].map(([light, harmonics]) => page.evaluate(draw, { ...given, light, harmonics, model, values }));
+    ].map(([light, harmonics]) => page.evaluate(draw, { ...GIVEN, light, harmonics, model, values }));
     const pictures = [(await around).pixels, (await lit).pixels];
     for (const [column, row] of [
       [100, 140],
