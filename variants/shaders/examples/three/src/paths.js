@@ -10,7 +10,7 @@ const $ = id => document.getElementById(id),
   MOST_STEPS = 4096,
   /// A head has some 100,000 hairs. The file has fewer, which are as much thicker.
   WIDER = 4;
-const state = { around: 0.55, up: 0.12, distance: 3.4, exposure: 0, light: 'sky' };
+const state = { around: 0.55, up: 0.12, distance: 3.4, exposure: 1.5, light: 'sky' };
 /// The page's tracer, for the console and for tests.
 const page = (globalThis.hairis = { Models, Strands, Tracer, readLight, scattering, state, tracer: null, steps: 0 });
 
@@ -48,7 +48,7 @@ async function start() {
       eye = [Math.sin(around) * Math.cos(up), Math.sin(up), Math.cos(around) * Math.cos(up)].map(
         (x, axis) => centre[axis] + distance * radius * x,
       );
-    tracer.setView({ eye, at: centre, slope: Math.tan(Math.PI / 12), backdrop: [0.02, 0.022, 0.025] }, side);
+    tracer.setView({ eye, at: centre, slope: Math.tan(Math.PI / 12), backdrop: [0.007, 0.008, 0.009] }, side);
     tracer.restart();
     page.steps = 0;
     generation++;
