@@ -272,7 +272,16 @@ def pictures():
     return record, ["", *words.values()], rows
 
 
-TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "pictures": pictures, "refits": refits, "speed": speed, "uphill": uphill}
+def dual():
+    """Dual scattering over paths, by scene, model and colour."""
+    record = Record("dual.csv")
+    rows = [[row["scene"], row["model"], row["colour"], *(f"{float(row[channel]):.2f}" for channel in ("red", "green", "blue")),
+             f"{100 * float(row['once']):.0f}%", f"{100 * float(row['by pixel']):.0f}%", f"{float(row['dual ms']):.0f} and {float(row['paths ms']):.0f} ms"]
+            for row in record.rows]
+    return record, ["scene", "model", "colour", "red", "green", "blue", "once", "by pixel", "time, dual and paths"], rows
+
+
+TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "dual": dual, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "pictures": pictures, "refits": refits, "speed": speed, "uphill": uphill}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 

@@ -67,6 +67,7 @@
 #![warn(clippy::missing_inline_in_public_items)]
 
 pub mod columns;
+pub mod dual_scattering;
 mod frame;
 #[cfg(any(doc, doctest))]
 pub mod guide;

@@ -1,4 +1,4 @@
-//! Prints every model as functions over arrays, which the modules for frameworks run.
+//! Prints every model, and dual scattering, as functions over arrays, which the modules for frameworks run.
 
 use hairis_shaders::{Call, Language, Program, Target, print};
 use hairis_variants::ModelId;
@@ -15,4 +15,7 @@ fn main() {
         let file = Path::new(&folder).join(format!("{id:?}.py"));
         fs::write(file, print(&program, Language::Python)).expect("cargo makes the folder");
     }
+    let dual = Program::dual_scattering(Target::GpuNative);
+    let file = Path::new(&folder).join("dual_scattering.py");
+    fs::write(file, print(&dual, Language::Python)).expect("cargo makes the folder");
 }

@@ -17,9 +17,11 @@ use hairis::ParamError;
 use {
     core::ops::{Deref, DerefMut},
     glam::Vec3,
+    hairis::columns::SampleColumns,
+    hairis::dual_scattering::{Averages, DualScattering},
     hairis::model::{DynBsdf, DynBsdf8},
     hairis::simd::Level,
-    hairis::{Bsdf, Bsdf8, Conserving, Hit, Hit8, LobeMask, Material, Material8},
+    hairis::{Bsdf, Bsdf8, Conserving, Hit, Hit8, Lobe, LobeMask, Material, Material8},
 };
 
 /// Model of the registry, with the names under which hosts find it.
@@ -367,6 +369,41 @@ impl ModelId {
             None => None,
         };
         Self::find(M::NAME, word).expect("a model of the list")
+    }
+}
+
+#[cfg(feature = "any")]
+impl AnyMaterial {
+    /// Measures the averages of dual scattering: see [`DualScattering::new`].
+    ///
+    /// ```
+    /// use hairis_variants::ModelId;
+    /// let hair = ModelId::Chiang.material(&ModelId::Chiang.measured())?;
+    /// let normal = hair.dual_scattering().averages(0.0);
+    /// assert!(normal.forward.albedo[0] > normal.backward.albedo[0]);
+    /// # Ok::<(), hairis::ParamError>(())
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn dual_scattering(&self) -> DualScattering<f32> {
+        DualScattering::measured(self.model().lobes().len(), &mut self.draw())
+    }
+
+    /// Returns the largest errors of these averages: see [`DualScattering::errors`].
+    #[inline]
+    #[must_use]
+    pub fn dual_scattering_errors(&self, dual: &DualScattering<f32>) -> Averages<f32> {
+        dual.errors(self.model().lobes().len(), &mut self.draw())
+    }
+
+    /// Returns a function that draws samples of one lobe at a hit.
+    fn draw(&self) -> impl FnMut(Hit, Lobe, [&[f32]; 3], SampleColumns<'_>) {
+        |hit, lobe, xi, out| {
+            let mut bsdf = self.prepare(hit);
+            bsdf.set_lobes(LobeMask::of(&[lobe]));
+            let drawn = bsdf.sample_columns(xi, out);
+            debug_assert!(drawn.is_ok(), "columns of one length");
+        }
     }
 }
 

@@ -2,9 +2,10 @@
 
 use glam::Vec3;
 use hairis::columns::{EvalColumns, HitColumns, SampleColumns};
+use hairis::dual_scattering::{Crossed, DualScattering, GAIN};
 use hairis::model::Model;
 use hairis::resample::{CandidateColumns, Counts, Partition, WeightColumns, choose};
-use hairis::{Bsdf, Conserving, FiberFrame, Hit, Lobe, LobeMask, Material};
+use hairis::{Bsdf, Conserving, FiberFrame, Gaussian, Hit, Lobe, LobeMask, Material, Published};
 use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
 
 /// Lengths of columns at one hit: less than a packet, one, pairs of the widest packets, and more than a chunk.
@@ -409,6 +410,35 @@ fn table(to: &mut Stream) {
         .for_each(|column| to.floats(column));
 }
 
+/// Dual scattering of one material, under random light.
+fn dual(to: &mut Stream) {
+    let case = &cases()[0];
+    to.case(case);
+    let material = Material::new(
+        &Published(Gaussian),
+        &params::<Published<Gaussian>>(&case.values, case.energy),
+    );
+    let dual = DualScattering::new(&material);
+    to.floats(dual.coefficients.as_flattened().as_flattened());
+    let write = |to: &mut Stream, crossed: &Crossed| {
+        to.floats(&[crossed.direct]);
+        to.floats(&[crossed.scattered, crossed.shift, crossed.variance].concat());
+    };
+    for _ in 0..40 {
+        let (wo, wi) = (to.direction(), to.direction());
+        let [theta, count] = [3.0 * to.uniform() - 1.5, 6.0 * to.uniform()];
+        to.floats(&[&wo[..], &wi, &[theta, count]].concat());
+        let fibre = dual.averages(theta);
+        write(to, &Crossed::strands(&fibre, count));
+        let crossed = Crossed::depth(&fibre, count);
+        write(to, &crossed);
+        let crossed = crossed.through(&fibre);
+        write(to, &crossed);
+        let [wo, wi] = [wo, wi].map(|v| Vec3::from(v).into());
+        to.floats(&dual.shade(wo, wi, [0.25, 0.5, 1.0], &crossed, [GAIN; 2]));
+    }
+}
+
 /// The whole stream.
 pub fn all() -> Vec<u8> {
     let mut to = Stream {
@@ -423,5 +453,6 @@ pub fn all() -> Vec<u8> {
         case.id.visit(One(&case.values, case.energy, &mut to));
     }
     table(&mut to);
+    dual(&mut to);
     to.bytes
 }

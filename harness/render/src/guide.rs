@@ -6,6 +6,7 @@
 //! | [`hair`] | Which files of hair and heads are read and written, and what happens to strands that are damaged? |
 //! | [`estimates`] | How is light estimated, and where do uniform numbers come from? |
 //! | [`resampled`] | What does it save to trace rays for the best of several candidates? |
+//! | [`dual`] | When is dual scattering enough, which follows no paths? |
 //! | [`samplers`] | What is each sampler worth on images, and how are errors measured? |
 //! | [`fit`] | How is a material recovered from a picture? |
 //! | [`runs`] | How does a run continue after a stop, grow, and use several machines? |
@@ -16,7 +17,8 @@
 /// repository, because the first definition of a target counts.
 macro_rules! links {
     () => {
-        "[energy]: https://docs.rs/hairis/latest/hairis/guide/energy/
+        "[dual]: https://docs.rs/hairis/latest/hairis/guide/dual_scattering/
+[energy]: https://docs.rs/hairis/latest/hairis/guide/energy/
 [estimates]: crate::guide::estimates
 [eval]: https://docs.rs/hairis-harness/latest/hairis_harness/guide/eval/
 [exits]: crate::guide::conventions#exit-codes
@@ -37,4 +39,4 @@ macro_rules! chapters {
     )* };
 }
 
-chapters! { scenes hair estimates resampled samplers fit runs conventions tree }
+chapters! { scenes hair estimates resampled dual samplers fit runs conventions tree }

@@ -117,6 +117,13 @@ impl Scene {
     #[inline]
     #[must_use]
     pub fn blocked(&self, ray: &Ray) -> bool {
+        self.blocked_by_surfaces(ray) || self.tree.occluded(ray)
+    }
+
+    /// Returns true if the head or a rectangle blocks a ray to a light, whatever hair is in between.
+    #[inline]
+    #[must_use]
+    pub fn blocked_by_surfaces(&self, ray: &Ray) -> bool {
         let t_max = ray.t_max * SHORTER;
         let short = |t: f32| t < t_max;
         self.head
@@ -126,7 +133,6 @@ impl Scene {
                 .rectangles
                 .iter()
                 .any(|one| one.meet(ray.origin, ray.direction, 0.0).is_some_and(short))
-            || self.tree.occluded(ray)
     }
 
     /// Removes the radiance from directions that an ellipsoidal head blocks. The test is so cheap that

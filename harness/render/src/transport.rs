@@ -2,6 +2,7 @@
 
 mod clock;
 mod cut_off;
+mod dual;
 mod gather;
 mod path;
 pub mod profile;
@@ -33,6 +34,8 @@ pub enum Integrator {
     Direct,
     /// Paths
     Path,
+    /// Direct light through the hair that it crosses, and what comes back from the hair behind: dual scattering
+    Dual,
 }
 
 impl Integrator {
@@ -43,6 +46,7 @@ impl Integrator {
             Self::Gather => "gather",
             Self::Direct => "direct",
             Self::Path => "path",
+            Self::Dual => "dual",
         }
     }
 
@@ -195,6 +199,7 @@ pub fn render_by_tables(
         .filter(|tile| tile.samples < samples)
         .collect();
     let done = AtomicUsize::new(total - todo.len());
+    let materials = dual::Materials::new(scene, settings.integrator);
     let whole = Mutex::new(Profile::default());
     each_until(todo, stop, |tile| {
         let start = seconds_of_thread();
@@ -204,6 +209,7 @@ pub fn render_by_tables(
         match settings.integrator {
             Integrator::Gather => gather::tile(scene, tables, settings, tile, samples),
             Integrator::Direct | Integrator::Path => paths(scene, tables, settings, tile, samples),
+            Integrator::Dual => dual::tile(scene, &materials, settings, tile, samples),
         }
         tile.seconds += seconds_of_thread() - start;
         if settings.profile

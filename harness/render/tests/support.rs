@@ -11,10 +11,13 @@ use hairis_render::transport::{self, Settings};
 
 /// Returns hair by the names of its model, sampler and preset.
 pub(crate) fn hair(model: &str, sampler: &str, preset: &str) -> Hair {
-    Choice::find(model, sampler, preset)
-        .expect("listed")
-        .hair(Energy::Raw)
-        .expect("in range")
+    hair_of([model, sampler, preset], Energy::Raw)
+}
+
+/// Returns hair like [`hair`], with an energy.
+pub(crate) fn hair_of([model, sampler, preset]: [&str; 3], energy: Energy) -> Hair {
+    let choice = Choice::find(model, sampler, preset).expect("listed");
+    choice.hair(energy).expect("in range")
 }
 
 /// Returns a scene with little hair in a small picture.

@@ -10,13 +10,15 @@ default of c, `gpu-native` of python, and `gpu` of the other targets: see varian
   hairis shader --model gaussian --target c > hairis_gaussian.h
   hairis shader --model chiang --target wgsl --call eval_hit --call sample_hit > chiang.wgsl
   hairis shader --material red.json --target glsl --call eval_hit --only value
+  hairis shader --model dual-scattering --material red.json --conserving --target wgsl
   hairis shader --out DIR";
 
 /// Print a model as source of another language, which needs no other file
 #[derive(Clone, Debug, Parser)]
 #[command(name = "hairis-shader", bin_name = "hairis shader", version, after_help = SHADER)]
 pub struct Shader {
-    /// Name of the model, as in `hairis eval` [default: that of the material]
+    /// Name of the model, as in `hairis eval`, or dual-scattering for multiple scattering by the averages of materials of any model
+    /// [default: that of the material]
     #[arg(long, value_name = "NAME", required_unless_present_any = ["material", "out"])]
     pub model: Option<String>,
     /// Word of the model's sampler, or of chiang's `select`, as in `hairis eval` [default: the first]

@@ -16,6 +16,9 @@ use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
 use std::fs;
 use std::path::Path;
 
+/// Name that stands for the functions of dual scattering in place of a model's.
+const DUAL: &str = "dual-scattering";
+
 /// Prints one model on standard output, or writes models into a folder.
 ///
 /// # Errors
@@ -26,10 +29,13 @@ pub fn run(flags: &Shader) -> Result<(), Error> {
     if let Some(dir) = &flags.out {
         return folder::write(flags, &materials, dir);
     }
-    let id = model(flags, &materials)?;
     let Some(target) = flags.target else {
         return Err(Error::Usage("--target must name a language".to_owned()));
     };
+    if flags.model.as_deref() == Some(DUAL) {
+        return print(dual_scattering(flags, target, &materials)?);
+    }
+    let id = model(flags, &materials)?;
     let (_, text) = id.visit(Source {
         flags,
         target,
@@ -96,20 +102,7 @@ impl Visitor for Source<'_> {
 
     fn visit<M: Registered>(self) -> Self::Output {
         let flags = self.flags;
-        let arithmetic = match (flags.arithmetic, self.target) {
-            (Some(ShaderArithmetic::Exact), _) | (None, ShaderTarget::C) => Target::Exact,
-            (Some(ShaderArithmetic::Fused), ShaderTarget::Python) => {
-                return Err(Error::Usage(
-                    "--arithmetic must be exact, gpu or gpu-native for python, whose frameworks have no fma that rounds once, got fused"
-                        .to_owned(),
-                ));
-            }
-            (Some(ShaderArithmetic::Fused), _) => Target::Fused,
-            (Some(ShaderArithmetic::GpuNative), _) | (None, ShaderTarget::Python) => {
-                Target::GpuNative
-            }
-            (Some(ShaderArithmetic::Gpu), _) | (None, _) => Target::Gpu,
-        };
+        let arithmetic = arithmetic(flags, self.target)?;
         let mut program = Program::of_id(ModelId::of::<M>(), arithmetic);
         let functions = functions(flags, &program)?;
         for (name, _) in self.materials {
@@ -138,22 +131,70 @@ impl Visitor for Source<'_> {
             add(name, M::Params::from_values(values)?)?;
         }
         program.keep(functions);
-        let language = match self.target {
-            ShaderTarget::C => Language::C,
-            ShaderTarget::Wgsl => Language::Wgsl,
-            ShaderTarget::Glsl => Language::Glsl,
-            ShaderTarget::Hlsl => Language::Hlsl,
-            ShaderTarget::Msl => Language::Msl,
-            ShaderTarget::Slang => Language::Slang,
-            ShaderTarget::Python => Language::Python,
-            ShaderTarget::Spirv => {
-                let words = spirv(&program)?;
-                return Ok((program, words));
-            }
-        };
-        let text = hairis_shaders::print(&program, language).into_bytes();
+        let text = source(&program, self.target)?;
         Ok((program, text))
     }
+}
+
+/// Returns the arithmetic that the flags ask for.
+fn arithmetic(flags: &Shader, target: ShaderTarget) -> Result<Target, Error> {
+    Ok(match (flags.arithmetic, target) {
+        (Some(ShaderArithmetic::Exact), _) | (None, ShaderTarget::C) => Target::Exact,
+        (Some(ShaderArithmetic::Fused), ShaderTarget::Python) => {
+            return Err(Error::Usage(
+                "--arithmetic must be exact, gpu or gpu-native for python, whose frameworks have no fma that rounds once, got fused"
+                    .to_owned(),
+            ));
+        }
+        (Some(ShaderArithmetic::Fused), _) => Target::Fused,
+        (Some(ShaderArithmetic::GpuNative), _) | (None, ShaderTarget::Python) => Target::GpuNative,
+        (Some(ShaderArithmetic::Gpu), _) | (None, _) => Target::Gpu,
+    })
+}
+
+/// Returns a program in a language.
+fn source(program: &Program, target: ShaderTarget) -> Result<Vec<u8>, Error> {
+    let language = match target {
+        ShaderTarget::C => Language::C,
+        ShaderTarget::Wgsl => Language::Wgsl,
+        ShaderTarget::Glsl => Language::Glsl,
+        ShaderTarget::Hlsl => Language::Hlsl,
+        ShaderTarget::Msl => Language::Msl,
+        ShaderTarget::Slang => Language::Slang,
+        ShaderTarget::Python => Language::Python,
+        ShaderTarget::Spirv => return spirv(program),
+    };
+    Ok(hairis_shaders::print(program, language).into_bytes())
+}
+
+/// Returns the functions of dual scattering, with the averages of each material.
+fn dual_scattering(
+    flags: &Shader,
+    target: ShaderTarget,
+    materials: &[(String, MaterialSpec)],
+) -> Result<Vec<u8>, Error> {
+    let of_models = [
+        ("--call", !flags.calls.is_empty()),
+        ("--only", !flags.only.is_empty()),
+        ("--gradient", flags.gradient),
+        ("--sampler", flags.sampler.is_some()),
+    ];
+    if let Some((flag, _)) = of_models.iter().find(|(_, is_given)| *is_given) {
+        return Err(Error::Usage(format!(
+            "{flag} must be left out with --model {DUAL}, which has functions of its own"
+        )));
+    }
+    let mut program = Program::dual_scattering(arithmetic(flags, target)?);
+    for (name, material) in materials {
+        let material = material.model.material(&material.values)?;
+        let material = if flags.conserving {
+            material.conserving()
+        } else {
+            material
+        };
+        program.add_dual_material(name, &material.dual_scattering());
+    }
+    source(&program, target)
 }
 
 #[cfg(feature = "spirv")]

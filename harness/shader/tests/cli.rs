@@ -479,3 +479,23 @@ fn bad_flags_are_refused() {
         assert!(error.contains(word), "{args:?}: {error}");
     }
 }
+
+#[test]
+fn dual_scattering_is_printed_with_the_averages_of_materials() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("red.json");
+    fs::write(&file, good().to_string()).unwrap();
+    let file = file.to_str().unwrap();
+    let model = ["--model", "dual-scattering", "--target", "wgsl"];
+    let raw = print(&[&model[..], &["--material", file]].concat());
+    for part in [
+        "fn hairis_dual_scattering_shade(material: ",
+        "fn hairis_dual_scattering_material_red() -> ",
+    ] {
+        assert!(raw.contains(part), "{part} in {raw}");
+    }
+    let conserving = print(&[&model[..], &["--material", file, "--conserving"]].concat());
+    assert_ne!(raw, conserving, "the hair is so bright that it is scaled");
+    let error = refused(&[&model[..], &["--gradient"]].concat());
+    assert!(error.contains("--gradient must be left out"), "{error}");
+}

@@ -133,6 +133,11 @@ typedef struct hairis_lobe_result { float value, color[3], pdf; } hairis_lobe_re
 /* For a discarded sample, lobe is -1 and all other fields are 0. Such a sample counts, with a contribution of 0: do not redraw it. */
 typedef struct hairis_sample_result { float wi[3], pdf, value[3], weight[3]; int32_t lobe; } hairis_sample_result;
 
+/* Averages of a fibre's scattering as polynomials of the inclination: quantities, channels, powers. */
+typedef struct hairis_dual { float coefficients[8][3][10]; } hairis_dual;
+/* Light after the fibres between it and a hit, as shares of what it was; shift and variance of its inclination in rad and rad^2. */
+typedef struct hairis_crossed { float direct, scattered[3], shift[3], variance[3]; } hairis_crossed;
+
 /* Outputs. Columns that are NULL are not written; over hits, the three columns of one vector are either all NULL or all given. */
 typedef struct hairis_evals { float *value[3], *pdf; } hairis_evals;
 /* lobe: slot of the lobe as a number, -1 for a discarded sample. The value, pdf and weight of a discarded sample are 0; its wi may be
@@ -181,6 +186,19 @@ hairis_status hairis_material_init(hairis_material *to, const hairis_params *par
 /* Returns the largest directional albedo without the factor of HAIRIS_ENERGY_CONSERVING. Above 1, the material returns more light
  * than arrives. The search takes 0.1 ms. */
 float hairis_material_max_albedo(const hairis_material *material);
+
+/* Dual scattering, for renderers that follow no paths. hairis_dual_init measures a material, in tens of milliseconds. strands returns
+ * light that crossed count fibres with these averages, which lie at the inclination theta_i (rad) to it; depth, light that came through
+ * an optical depth, the mean number of such fibres. through adds one fibre to light that begins with direct = 1 and zeros else. shade
+ * writes light from wi to the viewer in place of S (single), by one scattering and by those of other fibres; gain is
+ * { HAIRIS_DUAL_GAIN, HAIRIS_DUAL_GAIN }, or 0 for light that crossed fibres or that comes back from those behind. */
+#define HAIRIS_DUAL_GAIN 1.15f
+hairis_status hairis_dual_init(hairis_dual *to, const hairis_material *material);
+hairis_crossed hairis_dual_strands(const hairis_dual *dual, float theta_i, float count);
+hairis_crossed hairis_dual_depth(const hairis_dual *dual, float theta_i, float depth);
+void hairis_dual_through(hairis_crossed *crossed, const hairis_dual *dual, float theta_i);
+void hairis_dual_shade(const hairis_dual *dual, const float wo[3], const float wi[3], const float single[3],
+                       const hairis_crossed *crossed, const float gain[2], float value[3]);
 
 /* Functions called once per hit. frame writes the rows u, v and w; without a normal, v and w depend on the tangent alone. offset
  * returns the h of a hit with this outward normal, with all arguments in world space. prepare takes wo and h; far-field models ignore

@@ -256,6 +256,23 @@ structs! {
         /// Slot of the lobe, -1 for a discarded sample.
         lobe: i32,
     }
+    /// Averages of a material for dual scattering.
+    DualScattering = "hairis_dual" {
+        /// Coefficients by quantity, channel and power.
+        coefficients: [[[f32; 10]; 3]; 8],
+    }
+    /// Light that has crossed fibres.
+    #[derive(Default)]
+    Crossed = "hairis_crossed" {
+        /// Share of the light that has crossed no fibre.
+        direct: f32,
+        /// Share of the light that fibres have scattered forward.
+        scattered: [f32; 3],
+        /// Mean shift of its inclination, rad.
+        shift: [f32; 3],
+        /// Variance of its inclination, rad^2.
+        variance: [f32; 3],
+    }
     /// Columns of evaluations.
     Evals = "hairis_evals" {
         /// S by component, linear RGB.

@@ -12,6 +12,7 @@
 
 pub mod artist;
 pub mod columns;
+pub mod dual;
 mod handles;
 pub mod hits;
 pub mod layout;

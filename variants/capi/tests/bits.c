@@ -288,6 +288,27 @@ static void table(void) {
   free(materials), free(index), free(row);
 }
 
+/* Dual scattering of one material, under random light. */
+static void dual(void) {
+  hairis_material one;
+  hairis_dual averages;
+  if (!material(&one) || hairis_dual_init(&averages, &one) != HAIRIS_OK) fail("averages of a material");
+  snprintf(place, sizeof place, "dual scattering");
+  same(averages.coefficients, sizeof averages.coefficients, "hairis_dual_init");
+  for (int round = 0; round < 40; ++round) {
+    float wo[3], wi[3], number[2], gain[2] = {HAIRIS_DUAL_GAIN, HAIRIS_DUAL_GAIN}, single[3] = {0.25f, 0.5f, 1}, value[3];
+    memcpy(wo, take(12), 12), memcpy(wi, take(12), 12), memcpy(number, take(8), 8);
+    hairis_crossed crossed = hairis_dual_strands(&averages, number[0], number[1]);
+    same(&crossed, sizeof crossed, "hairis_dual_strands");
+    crossed = hairis_dual_depth(&averages, number[0], number[1]);
+    same(&crossed, sizeof crossed, "hairis_dual_depth");
+    hairis_dual_through(&crossed, &averages, number[0]);
+    same(&crossed, sizeof crossed, "hairis_dual_through");
+    hairis_dual_shade(&averages, wo, wi, single, &crossed, gain, value);
+    same(value, sizeof value, "hairis_dual_shade");
+  }
+}
+
 int main(int count, char **arguments) {
   FILE *file = count == 2 || count == 3 ? fopen(arguments[1], "rb") : NULL;
   if (!file || fseek(file, 0, SEEK_END)) return fprintf(stderr, "usage: bits ANSWERS [short]\n"), 2;
@@ -333,6 +354,7 @@ int main(int count, char **arguments) {
     free(one);
   }
   table();
+  dual();
   if (at != end) fail("the file of answers is longer");
   free(bytes);
   char level[32];

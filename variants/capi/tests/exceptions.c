@@ -17,9 +17,10 @@ enum { HITS = 400, WIDTH = 21 };
 
 static const char *const call_names[] = {"material_init", "max_albedo", "frame", "offset", "prepare", "restrict", "albedo",
                                          "eval_pdf", "lobes", "sample", "eval_columns", "sample_columns", "eval_hits",
-                                         "sample_hits", "weigh_columns", "choose", "control"};
+                                         "sample_hits", "weigh_columns", "choose", "dual_init", "dual_strands", "dual_depth", "dual_through",
+                                         "dual_shade", "control"};
 enum { INIT, MAX_ALBEDO, FRAME, OFFSET, PREPARE, RESTRICT, ALBEDO, EVAL, LOBES, SAMPLE, EVAL_COLUMNS, SAMPLE_COLUMNS, EVAL_HITS,
-       SAMPLE_HITS, WEIGH, CHOOSE, CONTROL, CALLS };
+       SAMPLE_HITS, WEIGH, CHOOSE, DUAL_INIT, DUAL_STRANDS, DUAL_DEPTH, DUAL_THROUGH, DUAL_SHADE, CONTROL, CALLS };
 static unsigned long made[CALLS], raising[CALLS];
 static int flags_of[CALLS], traps;
 
@@ -101,6 +102,26 @@ static void calls(const hairis_material *hair) {
   if (!(total < INFINITY)) puts("FAIL a result is not finite"), exit(1);
 }
 
+/* Dual scattering of one material. */
+static void dual_scattering(const hairis_material *hair) {
+  hairis_dual dual;
+  hairis_status refused;
+  CALL(DUAL_INIT, refused = hairis_dual_init(&dual, hair));
+  float total = 0;
+  for (int i = 0; i < HITS; ++i) {
+    float wo[3], wi[3], single[3] = {uniform(), uniform(), uniform()}, gain[2] = {HAIRIS_DUAL_GAIN, HAIRIS_DUAL_GAIN}, value[3];
+    float theta = 3 * uniform() - 1.5f, count = i % 4 ? 9 * uniform() : (float)(i % 3);
+    hairis_crossed strands, depth;
+    direction(wo), direction(wi);
+    CALL(DUAL_STRANDS, strands = hairis_dual_strands(&dual, theta, count));
+    CALL(DUAL_DEPTH, depth = hairis_dual_depth(&dual, theta, count));
+    CALL(DUAL_THROUGH, hairis_dual_through(&strands, &dual, theta));
+    CALL(DUAL_SHADE, hairis_dual_shade(&dual, wo, wi, single, i % 2 ? &strands : &depth, gain, value));
+    total += value[0] + value[1] + value[2];
+  }
+  if (refused || !(total < INFINITY)) puts("FAIL a result of dual scattering is not finite"), exit(1);
+}
+
 int main(int count, char **arguments) {
   int bad = 0;
   traps = count > 1 && !strcmp(arguments[1], "trap");
@@ -122,6 +143,7 @@ int main(int count, char **arguments) {
         CALL(MAX_ALBEDO, most = hairis_material_max_albedo(&hair));
         if (refused || !(most < INFINITY)) return 2;
         calls(&hair);
+        if (energy == HAIRIS_ENERGY_CONSERVING) dual_scattering(&hair);
       }
     if (traps) continue;
     volatile float zero = 0, quotient;

@@ -190,6 +190,24 @@ static void columns(void) {
        "no rows");
 }
 
+/* Dual scattering of nothing: refused, or black. */
+static void dual(void) {
+  static hairis_material none;
+  static hairis_dual averages;
+  hairis_crossed clear = {1, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, after = clear;
+  const float v[3] = {0, 1, 0}, gain[2] = {1, 1};
+  float value[3] = {7, 7, 7};
+  want(hairis_dual_init(NULL, &none) == HAIRIS_ARGUMENT && hairis_dual_init(&averages, NULL) == HAIRIS_ARGUMENT &&
+           hairis_dual_init(&averages, &none) == HAIRIS_ARGUMENT,
+       "averages of nothing");
+  hairis_dual_through(NULL, &averages, 0);
+  hairis_dual_through(&after, NULL, 0);
+  want(after.direct == 0 && after.scattered[0] == 0 && hairis_dual_depth(NULL, 0, 0).direct == 1, "a fibre that scatters nothing");
+  hairis_dual_shade(&averages, v, NULL, v, &clear, gain, value);
+  hairis_dual_shade(&averages, v, v, v, &clear, gain, NULL);
+  want(value[0] == 0 && value[2] == 0, "light from nowhere");
+}
+
 /* What a handle at this place gives in calls without a status: nothing. */
 static void scatters_nothing(const hairis_material *material, hairis_bsdf *bsdf, const char *what) {
   hairis_eval_result eval = hairis_eval_pdf(bsdf, 0, 1, 0);
@@ -364,6 +382,7 @@ int main(void) {
   memset(&error, 0x5a, sizeof error);
   setup();
   columns();
+  dual();
   empty();
   misplaced();
   descriptions();

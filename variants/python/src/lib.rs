@@ -102,5 +102,6 @@ fn _hairis(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Bsdf>()?;
     module.add_function(wrap_pyfunction!(level, module)?)?;
     module.add_function(wrap_pyfunction!(program::program, module)?)?;
+    module.add_function(wrap_pyfunction!(program::dual_program, module)?)?;
     module.add_function(wrap_pyfunction!(models, module)?)
 }

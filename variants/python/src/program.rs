@@ -3,6 +3,8 @@
 use crate::fields::double;
 use crate::hair::Material;
 use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
+use hairis_capi::dual::hairis_dual_init;
+use hairis_capi::layout::DualScattering;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -39,4 +41,20 @@ pub(crate) fn program(material: &Bound<'_, Material>) -> PyResult<(&'static str,
         hairis_variants::for_each_model!(each),
         id.visit(Numbers(values))?,
     ))
+}
+
+/// Returns dual scattering as functions over arrays, which `hairis shader --model dual-scattering --target python` prints, and the averages of a
+/// material in their order.
+#[pyfunction]
+pub(crate) fn dual_program(material: &Bound<'_, Material>) -> (&'static str, Vec<f64>) {
+    let mut dual = DualScattering {
+        coefficients: [[[0.0; 10]; 3]; 8],
+    };
+    // SAFETY: both live as long as the call, and the material is initialised.
+    unsafe { hairis_dual_init(&raw mut dual, &raw const material.get().raw) };
+    let numbers = dual.coefficients.as_flattened().as_flattened();
+    (
+        include_str!(concat!(env!("OUT_DIR"), "/dual_scattering.py")),
+        numbers.iter().copied().map(double).collect(),
+    )
 }

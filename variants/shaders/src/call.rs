@@ -1,5 +1,7 @@
 //! Calls of a model that become functions of its program.
 
+use crate::program::dual::PURPOSES;
+
 /// Function of a model that a program provides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Call {
@@ -69,4 +71,12 @@ impl Call {
             Self::EvalSampleHit => "eval_sample_hit",
         }
     }
+}
+
+/// Returns the purpose of a function by its name, of a model or of dual scattering.
+pub(crate) fn purpose(name: &str) -> Option<&'static str> {
+    let of_models = Call::ALL
+        .into_iter()
+        .map(|call| (call.name(), call.purpose()));
+    (of_models.chain(PURPOSES)).find_map(|(one, purpose)| (one == name).then_some(purpose))
 }

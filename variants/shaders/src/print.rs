@@ -5,7 +5,7 @@ mod operations;
 mod python;
 mod syntax;
 
-use crate::call::Call;
+use crate::call::purpose;
 use crate::function::{Argument, Function};
 use crate::graph::{Kind, Origin};
 use crate::program::Program;
@@ -328,9 +328,8 @@ impl<'a> Body<'a> {
     }
 
     fn signature(&self, out: &mut String) {
-        let call = (Call::ALL.iter()).find(|call| call.name() == self.function.name());
-        if let Some(call) = call {
-            let _ = writeln!(out, "// {}", call.purpose());
+        if let Some(purpose) = purpose(self.function.name()) {
+            let _ = writeln!(out, "// {purpose}");
         }
         let of = type_name(self.program, self.function.output());
         let argument = |argument: &Argument| {

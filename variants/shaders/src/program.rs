@@ -1,5 +1,7 @@
 //! Programs: all functions of a model, with the records that they take and return.
 
+pub(crate) mod dual;
+
 use crate::call::Call;
 use crate::function::{Argument, Function};
 use crate::graph::{Graph, Lane, input, record};

@@ -3,6 +3,7 @@
 mod bits;
 mod c;
 mod cuda;
+mod dual;
 mod gradients;
 mod languages;
 mod material;

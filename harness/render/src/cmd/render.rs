@@ -94,7 +94,7 @@ fn picture(
     };
     let rays = match settings.integrator {
         Integrator::Gather => settings.rays,
-        Integrator::Direct | Integrator::Path => 1,
+        Integrator::Direct | Integrator::Path | Integrator::Dual => 1,
     };
     writable(&part_path)?;
     let fresh = Part {

@@ -223,6 +223,7 @@ pub(super) fn kind(measured: &Measured) -> &'static str {
         Integrator::Gather => "direct, at shading points",
         Integrator::Direct => "direct",
         Integrator::Path => "paths",
+        Integrator::Dual => "dual scattering",
     }
 }
 

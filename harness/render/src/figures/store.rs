@@ -205,7 +205,7 @@ impl Films<'_> {
         let (start, mut saver) = (Instant::now(), Saver::new(log, &self.store.interrupt));
         let pass = match settings.integrator {
             Integrator::Gather => GATHER_PASS,
-            Integrator::Direct | Integrator::Path => PATH_PASS,
+            Integrator::Direct | Integrator::Path | Integrator::Dual => PATH_PASS,
         };
         let mut done = part.film.samples();
         while done < samples {

@@ -48,7 +48,7 @@ const MOST: usize = 2 * (PER_RAY * POOL) as usize;
 pub(super) fn length(integrator: Integrator) -> usize {
     match integrator {
         Integrator::Gather => 1 << 14,
-        Integrator::Direct | Integrator::Path => 1 << 12,
+        Integrator::Direct | Integrator::Path | Integrator::Dual => 1 << 12,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::syntax::{CONVENTIONS, bits};
 use super::{Body, Language, each};
-use crate::call::Call;
+use crate::call::purpose;
 use crate::function::{Argument, Function};
 use crate::program::Program;
 use crate::record::{Field, Record, Shape};
@@ -166,10 +166,7 @@ fn call(out: &mut String, program: &Program, function: &Function) {
         let _ = write!(names, "{name}, ");
         let _ = write!(forms, ", {name}=({name}, {form})");
     }
-    let purpose = (Call::ALL.iter()).find(|call| call.name() == name);
-    let purpose = purpose.map_or("Part of a result, or derivatives of one.", |call| {
-        call.purpose()
-    });
+    let purpose = purpose(name).unwrap_or("Part of a result, or derivatives of one.");
     let names = names.trim_end_matches(", ");
     let _ = writeln!(
         out,
