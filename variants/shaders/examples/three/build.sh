@@ -28,9 +28,10 @@ for name in index paths; do
 done
 shader=("${HAIRIS:-}" shader)
 [ -n "${HAIRIS:-}" ] || shader=(cargo run -q --release --locked --manifest-path "$root/Cargo.toml" -p hairis-shader --)
+"${shader[@]}" --target wgsl --model dual-scattering | sed '/^ *\/\//d' > "$target/page/dual-scattering.wgsl"
 for file in "$target"/page/*.wgsl; do
   name=$(basename "$file" .wgsl)
-  [[ $name == *.paths ]] || "${shader[@]}" --target wgsl --model "$name" --call eval_sample_hit | sed '/^ *\/\//d' > "$target/page/$name.paths.wgsl"
+  [[ $name == *.paths || $name == dual-scattering ]] || "${shader[@]}" --target wgsl --model "$name" --call eval_sample_hit | sed '/^ *\/\//d' > "$target/page/$name.paths.wgsl"
 done
 render=("${RENDER:-}")
 [ -n "${RENDER:-}" ] || render=(cargo run -q --release --locked --manifest-path "$root/Cargo.toml" -p hairis-render --)

@@ -20,6 +20,7 @@ export class Hairis extends Models {
         );
       values = preset;
     }
-    return new HairMaterial(this, await this.source(model), { model, values }, options);
+    const [source, dual] = await Promise.all([this.source(model), this.source('dual-scattering')]);
+    return new HairMaterial(this, { source, dual }, { model, values }, options);
   }
 }

@@ -1,5 +1,5 @@
 /// Node material of hair for WebGPURenderer: generated WGSL of a model, one directional light, and light from all around.
-import { Matrix4, NodeMaterial, SphericalHarmonics3, Vector3, Vector4 } from 'three/webgpu';
+import { Matrix4, NodeMaterial, SphericalHarmonics3, Vector2, Vector3, Vector4 } from 'three/webgpu';
 import {
   attribute,
   cameraPosition,
@@ -25,7 +25,7 @@ import {
   wgsl,
   wgslFn,
 } from 'three/tsl';
-import { multiple } from './multiple.js';
+import { GAIN, dim, multiple } from './multiple.js';
 import { INCLINATIONS, ROWS, place, scattering } from './scattering.js';
 import { hitFunction } from './models.js';
 
@@ -33,7 +33,7 @@ import { hitFunction } from './models.js';
 ///
 /// - `light`: a DirectionalLight of the scene, or null. Its intensity is irradiance across the light, as three.js has it.
 /// - `environment`: SphericalHarmonics3 of radiance, as LightProbeGenerator computes from a cube map, or null.
-/// - `crossings`: the `Crossings` of the strands, or null for hair that is nowhere in shadow.
+/// - `crossings`: the `Crossings` of the strands, or null for strands that know nothing of each other.
 /// - `lines`: true for `LineSegments`, false for ribbons.
 /// - `leastWidth`: of a ribbon in pixels. Thinner ribbons are widened to it, and stay opaque.
 ///
@@ -41,7 +41,7 @@ import { hitFunction } from './models.js';
 export class HairMaterial extends NodeMaterial {
   constructor(
     hairis,
-    source,
+    { source, dual },
     material,
     { light = null, environment = null, crossings = null, lines = false, leastWidth = 1 } = {},
   ) {
@@ -61,6 +61,13 @@ export class HairMaterial extends NodeMaterial {
       'vec4',
     );
     this.forward = uniform(new Vector3());
+    const averages = hitFunction(dual, '_depth');
+    this.averages = uniformArray(
+      Array.from({ length: averages.places.length / 4 }, () => new Vector4()),
+      'vec4',
+    );
+    /// Factors on light that other strands send on, and that they send back.
+    this.gains = uniform(new Vector2(GAIN, GAIN));
     this.set(material);
 
     const tangent = lines
@@ -71,7 +78,11 @@ export class HairMaterial extends NodeMaterial {
     const { across, pixels, radius } = lines
         ? { across: float(0), pixels: float(0), radius: attribute('radius', 'float') }
         : this.widen(tangent, leastWidth),
-      direct = wgslFn(directSource(hit, model.near_field), [wgsl(source)]);
+      includes = crossings ? [source, dual, multiple] : [source],
+      direct = wgslFn(
+        directSource(hit, model.near_field, crossings && averages),
+        includes.map(text => wgsl(text)),
+      );
     const toLight = uniform(new Vector3(0, 1, 0)).onObjectUpdate(({ object }) => this.aim(object, crossings)),
       irradiance = uniform(new Vector3()).onObjectUpdate(() => {
         const { light } = this;
@@ -80,6 +91,7 @@ export class HairMaterial extends NodeMaterial {
           : new Vector3();
       });
     const args = Object.fromEntries(this.constants.array.map((_, i) => [`c${i}`, this.constants.element(i)]));
+    if (crossings) this.averages.array.forEach((_, i) => (args[`d${i}`] = this.averages.element(i)));
     // Two neighbours in the table, and the place between them.
     const at = wgslFn(place)({ sine: dot(view, along) }),
       first = at.floor().min(INCLINATIONS - 2),
@@ -88,23 +100,18 @@ export class HairMaterial extends NodeMaterial {
       ),
       [...moments] = rows.map(([a, b]) => mix(a, b, at.sub(first)).xyz),
       factor = moments.pop();
-    const lit = direct({ ...args, view, along, across, pixels, pixel: screenCoordinate, toLight })
-        .mul(irradiance)
-        .mul(factor),
-      quadratics = [0, 1, 2].map(c => uniform(new Matrix4()).onObjectUpdate(() => quadratic(this.environment, c))),
-      around = environmentFunction(...moments, ...quadratics, view, along);
-
-    const dim = wgslFn(multiple);
-    let [behind, within] = [vec3(1), vec3(1)];
+    const quadratics = [0, 1, 2].map(c => uniform(new Matrix4()).onObjectUpdate(() => quadratic(this.environment, c)));
+    let around = environmentFunction(...moments, ...quadratics, view, along);
     if (crossings) {
       const local = modelWorldMatrixInverse.mul(vec4(positionWorld, 1)).xyz,
         counts = texture3D(crossings.texture, local.sub(uniform(crossings.low)).div(crossings.side)),
-        sine = cross(along, toLight).length(),
         own = radius.mul(crossings.own);
-      behind = dim(this.forward, counts.x.sub(own.mul(sine)).max(0)).xyz;
-      within = dim(this.forward, counts.y.sub(own.mul(Math.PI / 4)).max(0)).xyz;
+      args.depth = counts.x.sub(own.mul(cross(along, toLight).length())).max(0);
+      args.gains = this.gains;
+      around = around.mul(wgslFn(dim)(this.forward, counts.y.sub(own.mul(Math.PI / 4)).max(0)));
     }
-    this.colorNode = lit.mul(behind).add(around.mul(within));
+    const lit = direct({ ...args, view, along, across, pixels, pixel: screenCoordinate, toLight, factor });
+    this.colorNode = lit.mul(irradiance).add(around);
   }
 
   /// Sets the parameters: `{ model, word, values }` as the module describes them, with fields by the names of `hairis eval`. The model must
@@ -120,6 +127,8 @@ export class HairMaterial extends NodeMaterial {
     this.constants.array.forEach((four, i) => four.fromArray([0, 1, 2, 3].map(j => numbers[4 * i + j] ?? 0)));
     this.table.array.forEach((four, i) => four.fromArray(table, 4 * i));
     this.forward.value.fromArray(forward);
+    kernel.calls.dual_scattering(0);
+    this.averages.array.forEach((four, i) => four.fromArray(kernel.work[0], 4 * i));
   }
 
   /// Turns quads into ribbons that face the camera. Returns the place across the ribbon, from -1 to 1 along u x v, its width in
@@ -176,10 +185,13 @@ fn hairis_around(total: vec3f, mu: vec3f, mv: vec3f, muu: vec3f, mvv: vec3f, muv
 const NARROW = 3,
   PARTS = 4;
 
-/// S cos theta of one direction towards the light, for the constants in parameters c0, c1...
-function directSource({ call, type, places }, isNearField) {
-  const count = Math.ceil(places.length / 4),
-    copies = places.map((place, at) => `  hair.${place} = c${at >> 2}.${'xyzw'[at & 3]};`);
+/// Light towards the viewer of one direction towards the light: S cos theta, or what stands in its place in hair. Constants of the model are in
+/// parameters c0, c1..., and those of dual scattering in d0, d1...
+function directSource({ call, type, places }, isNearField, dual) {
+  const fours = (letter, places) =>
+      Array.from({ length: Math.ceil(places.length / 4) }, (_, i) => `${letter}${i}: vec4f, `).join(''),
+    copies = (variable, letter, places) =>
+      places.map((place, at) => `  ${variable}.${place} = ${letter}${at >> 2}.${'xyzw'[at & 3]};`).join('\n');
   const value = h => `${call}(hair, wo, ${h}, wi).value`;
   // One call in a loop, because a call for each offset would be as many copies of the model.
   const mean = `
@@ -191,9 +203,9 @@ function directSource({ call, type, places }, isNearField) {
     sum += ${value(`select(-across, 2.0 * (f32(i) + within) / ${PARTS}.0 - 1.0, isNarrow)`)} / f32(parts);
   }`;
   return `
-fn hairis_direct(${Array.from({ length: count }, (_, i) => `c${i}: vec4f`).join(', ')}, view: vec3f, along: vec3f, across: f32, pixels: f32, pixel: vec2f, toLight: vec3f) -> vec3f {
+fn hairis_direct(${fours('c', places)}${dual ? `${fours('d', dual.places)}depth: f32, gains: vec2f, ` : ''}view: vec3f, along: vec3f, across: f32, pixels: f32, pixel: vec2f, toLight: vec3f, factor: vec3f) -> vec3f {
   var hair: ${type};
-${copies.join('\n')}
+${copies('hair', 'c', places)}
   let sine = dot(view, along);
   let side = view - sine * along;
   let cosine = max(length(side), 1e-6);
@@ -201,7 +213,9 @@ ${copies.join('\n')}
   let wo = vec3f(sine, cosine, 0.0);
   let wi = vec3f(dot(toLight, along), dot(toLight, v), dot(toLight, cross(along, v)));
   ${isNearField ? mean : `let sum = ${value('0.0')};`}
-  return sum * length(wi.yz);
+  let single = factor * sum;
+${dual ? `  var averages: ${dual.type};\n${copies('averages', 'd', dual.places)}` : ''}
+  return ${dual ? 'hairis_multiple(averages, wo, wi, single, depth, gains)' : 'single'} * length(wi.yz);
 }`;
 }
 

@@ -1,13 +1,19 @@
-/// The term of multiple scattering: how light is dimmed, coloured and spread by the strands between the light and a strand.
-///
-/// - `forward`: mean forward albedo of the hair, linear RGB in [0, 1]: the share of light that a strand scatters away from the light.
-/// - `crossings`: expected number of strands between the light and the strand, from 0.
-/// - Returns the transmitted share as RGB in xyz, and the variance of the transmitted directions in w, rad^2.
-///
-/// A ray meets N strands, and N is taken as Poisson with the mean `crossings`. The mean of forward^N is then
-/// exp(-crossings (1 - forward)). Light that is scattered backward, or that comes from strands beside the ray, is missing, and the
-/// transmitted light keeps its direction, so that w is 0. Dual scattering is another function with these arguments and results.
+/// Multiple scattering: what light becomes on its way through hair, in WGSL behind the generated source of dual scattering.
+
+/// - `hairis_multiple`: the value that stands in place of S (`single`), for a directional light. `hair` are the averages of the material, `depth`
+///   is the mean number of strands between the hit and the light, and `gains` scale what other strands send on and send back.
+/// - `hairis_dim`: the share of light from all around that passes so many strands, of a mean forward albedo, linear RGB. A ray meets N strands,
+///   and N is taken as Poisson with the mean `depth`: the mean of forward^N is exp(-depth (1 - forward)).
 export const multiple = `
-fn hairis_multiple(forward: vec3f, crossings: f32) -> vec4f {
-  return vec4f(exp(-crossings * (1.0 - forward)), 0.0);
+fn hairis_multiple(hair: HairisDualScatteringMaterial, wo: vec3f, wi: vec3f, single: vec3f, depth: f32, gains: vec2f) -> vec3f {
+  let crossed = hairis_dual_scattering_depth(hair, asin(clamp(wi.x, -1.0, 1.0)), depth);
+  return hairis_dual_scattering_shade(hair, wo, wi, single, crossed, gains.x, gains.y).value;
 }`;
+
+export const dim = `
+fn hairis_dim(forward: vec3f, depth: f32) -> vec3f {
+  return exp(-depth * (1.0 - forward));
+}`;
+
+/// Factors of both parts, fitted once to paths of any length: GAIN of the library.
+export const GAIN = 1.15;
