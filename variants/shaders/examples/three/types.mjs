@@ -24,7 +24,7 @@ const field = one => {
   return `    /** ${one.doc.replace(/[.]$/, '')}${one.unit && `, ${one.unit}`}${range ?? ''}${instead} */\n    ${one.name}${isOptional ? '?' : ''}: ${kinds[one.kind](one)};`;
 };
 
-console.log(`import type { Data3DTexture, DirectionalLight, BufferGeometry, InstancedBufferGeometry, NodeMaterial, Sphere, SphericalHarmonics3, Vector3 } from 'three/webgpu';
+console.log(`import type { BufferGeometry, Data3DTexture, DirectionalLight, InstancedBufferGeometry, NodeMaterial, Sphere, SphericalHarmonics3, Vector2, Vector3 } from 'three/webgpu';
 
 /** Linear red, green and blue. */
 export type RGB = [number, number, number];
@@ -51,7 +51,7 @@ export interface Options {
   light?: DirectionalLight | null;
   /** Radiance from all around. */
   environment?: SphericalHarmonics3 | null;
-  /** Strands between a place and the light; without it nothing is in shadow. */
+  /** Strands between a place and the light; without it strands know nothing of each other. */
   crossings?: Crossings | null;
   /** For \`LineSegments\` in place of ribbons. */
   lines?: boolean;
@@ -70,6 +70,8 @@ export class Hairis {
 export class HairMaterial<M extends keyof Models = keyof Models> extends NodeMaterial {
   light: DirectionalLight | null;
   environment: SphericalHarmonics3 | null;
+  /** Factors on light that other strands send on and that they send back: 1.15 both. */
+  readonly gains: { value: Vector2 };
   /** Other parameters of the same model. Throws an error that names a value which is refused. */
   set(material: { model: M; values: Models[M] }): void;
 }

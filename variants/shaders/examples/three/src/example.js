@@ -115,7 +115,7 @@ async function start() {
       number('elevation', 'elevation', [-90, 90], '°'),
       number('light', 'sun', [0, 10]),
       number('sky', 'sky', [0, 2]),
-      check('shadows', state.shadows, value => ((state.shadows = value), shown(given, true))),
+      check('other strands', state.shadows, value => ((state.shadows = value), shown(given, true))),
       buttons(
         'Strands',
         [
@@ -151,7 +151,7 @@ async function start() {
     page.frames++;
     page.isBusy = false;
     $('note').textContent =
-      `${strands.ends.length} strands, ${strands.count} segments, ${(performance.now() - begin).toFixed(0)} ms for the last frame. Shadows are means over cells of ${(crossings.side / crossings.size).toFixed(1)} cm, and light that strands pass on to each other sideways or backward is missing.`;
+      `${strands.ends.length} strands, ${strands.count} segments, ${(performance.now() - begin).toFixed(0)} ms for the last frame. Strands are counted in cells of ${(crossings.side / crossings.size).toFixed(1)} cm; what they pass on to each other is dual scattering.`;
   });
 }
 

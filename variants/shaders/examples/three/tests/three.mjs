@@ -418,7 +418,7 @@ async function panel(open, drawn, check) {
       (await page.locator('#refusal').textContent()).startsWith('beta[0] must be a width'),
       await page.locator('#refusal').textContent(),
     );
-    await page.getByLabel('shadows').uncheck();
+    await page.getByLabel('other strands').uncheck();
     await change('shadows');
     await page.getByRole('button', { name: 'Lines' }).click();
     await change('lines');
