@@ -1,6 +1,6 @@
 #!/bin/bash
 # Promise: the page works. In headless Chromium: no error on the console; every slider moves a picture; values, V and L1 are those of
-# `hairis`; links, undo and JSON restore; WebGPU and the module shade alike, and the page does without WebGPU; at most 250,000 bytes
+# `hairis`; links, undo and JSON restore; WebGPU and the module shade alike, and the page does without WebGPU; at most 280,000 bytes
 # without the shaders, a map within 16 ms, the first paint within 300 ms. The example of `hairis shader --out` shades a hair. The
 # example for three.js shades pixels as `hairis eval` does, and its path tracer has the means of `hairis-render`.
 # Needs node, and npm's playwright-core and esbuild.

@@ -27,6 +27,7 @@ PACKETS = {
 }
 MODELS = {
     "Chiang": "chiang",
+    "DEon": "d-eon",
     "KajiyaKay": "kajiya-kay",
     "Gaussian": "gaussian",
     "Cauchy": "cauchy",

@@ -260,6 +260,18 @@ def uphill():
     return record, ["figure", "model", "stated, at most", "random points", "searched"], rows
 
 
+def rtxcr():
+    """Albedo, V and largest weight of RTXCR's far field, and of ours."""
+    record = Record("rtxcr.csv")
+    of = lambda row, digits, *names: ", ".join(f"{float(row[name]):.{digits}f}" for name in names)
+    rows = [[row["theta_o"], of(row, 3, "narrow_theirs", "wide_theirs"), of(row, 3, "clear"), of(row, 3, "brown_theirs"),
+             of(row, 3, "estimate_theirs"), of(row, 3, "brown"), of(row, 2, "variance_theirs"), of(row, 2, "variance"),
+             of(row, 1, "weight_theirs"), of(row, 1, "weight"), of(row, 1, "bound")] for row in record.rows]
+    header = ["`theta_o`, degrees", "clear hair in RTXCR, roughness .1, .3", "ours", "brown hair in RTXCR", "RTXCR's estimate of it", "ours",
+              "V in RTXCR", "V of ours", "largest weight in RTXCR", "ours", "bound of ours"]
+    return record, header, rows
+
+
 def pictures():
     """Numbers of the presets that fits found in pictures: distance from the truth, mean over the seeds with its standard error."""
     record = Record("pictures.csv")
@@ -281,7 +293,7 @@ def dual():
     return record, ["scene", "model", "colour", "red", "green", "blue", "once", "by pixel", "time, dual and paths"], rows
 
 
-TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "dual": dual, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "pictures": pictures, "refits": refits, "speed": speed, "uphill": uphill}
+TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "dual": dual, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "pictures": pictures, "refits": refits, "rtxcr": rtxcr, "speed": speed, "uphill": uphill}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 

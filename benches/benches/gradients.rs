@@ -10,7 +10,7 @@ use hairis::{Gaussian, Matched, Material, Published};
 use hairis_benches::inputs::{Column, DIRECTIONS, Inputs, arrays};
 use hairis_benches::{cpu, turns};
 use hairis_gradients::{Differentiable, GradColumns, Gradients, Weights};
-use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Parameters};
+use hairis_variants::{AllCauchy, Cauchy, Chiang, DEon, KajiyaKay, ModelId, Parameters};
 
 fn main() {
     println!("# CPU: {}", cpu::name());

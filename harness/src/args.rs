@@ -39,7 +39,7 @@ const FORMAT: &str = r#"A request. Angles are in radians, directions of unit len
    "params":{"alpha":[R,TT,TRT], "beta":[R,TT,TRT], "gamma_tt":x, "gamma_g":x, "phi_g":x,
              "i_r":[r,g,b], "i_tt":[r,g,b], "i_trt":[r,g,b], "i_g":x},
    "wo":[u,v,w], "wi":[u,v,w]}     or "xi":[lobe,theta,phi] in place of "wi"
-The other models, "kajiya-kay" and "chiang", have fields of their own: see harness/src/guide/eval.md. Builds
+The other models, "kajiya-kay", "chiang" and "d-eon", have fields of their own: see harness/src/guide/eval.md. Builds
 with the feature `every-sampler` also have the samplers "matched-5" and "matched-25", and "select":"by-channel".
 
 The answer to "wi", and to "xi" (lobe null: discarded, and 0 for the rest):

@@ -24,6 +24,7 @@ MODELS = (
     ("published", r"Published<"),
     ("Chiang, by channel", r"Chiang<true>"),
     ("Chiang", r"Chiang"),
+    ("d'Eon", r"DEon"),
     ("Kajiya-Kay", r"KajiyaKay"),
 )
 

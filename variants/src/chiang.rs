@@ -12,8 +12,11 @@ mod stand_ins;
 pub use far_field::{FarField, OffsetNodes};
 use gather::ChiangMaterial;
 pub use gather::ChiangPrepared;
+pub(crate) use gather::{Four, apart, four, same};
 pub use like::Likeness;
 pub use params::{ChiangDesc, ChiangParams, Shifts};
+
+pub(crate) use stand_ins::by_melanin;
 
 use hairis::model::{Direction, LobeEval, LobeModel};
 use hairis::simd::{Broadcast, Lanes, Scalar};

@@ -5,6 +5,7 @@
 //! | [`Cauchy`] in [`hairis::Published`] | the published model with every Gaussian a Cauchy | no | yes | Ou et al. 2012, section 3.3 |
 //! | [`KajiyaKay`] | a diffuse cylinder and one cone of highlights | `kd + ks` of its parameters | one of two forms | Kajiya & Kay 1989 |
 //! | [`Chiang`] | near field, absorption in place of colours | yes | no | Chiang et al. 2016; d'Eon et al. 2011 |
+//! | [`DEon`] | far field, absorption and a diffuse part | yes | no | d'Eon 2022 as RTXCR has it; d'Eon et al. 2011 |
 //!
 //! A model of your own needs no change in the kernels, as `examples/lambert_fiber` shows. A model of this crate also implements
 //! [`Registered`], has parameters that implement [`Parameters`], and has a line in `registry.rs`, the only list of models. Hosts can
@@ -27,6 +28,8 @@ compile_error!(
 
 mod cauchy;
 pub mod chiang;
+mod cone;
+pub mod d_eon;
 mod hair;
 pub mod kajiya_kay;
 mod parameters;
@@ -34,6 +37,7 @@ mod registry;
 
 pub use cauchy::Cauchy;
 pub use chiang::{Chiang, ChiangDesc, ChiangParams};
+pub use d_eon::{DEon, DEonDesc, DEonParams};
 pub use hair::{RegisteredBell, hair_desc};
 pub use kajiya_kay::{KajiyaKay, KajiyaKayDesc, KajiyaKayParams};
 pub use parameters::{Draw, Field, FieldError, Kind, Parameters, Values};

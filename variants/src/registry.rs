@@ -7,7 +7,7 @@
 #[cfg(feature = "any")]
 mod any;
 
-use crate::{AllCauchy, Cauchy, Chiang, Field, KajiyaKay, Parameters, Values};
+use crate::{AllCauchy, Cauchy, Chiang, DEon, Field, KajiyaKay, Parameters, Values};
 use hairis::model::{Model, Precision};
 use hairis::{Gaussian, Matched, Published};
 
@@ -227,6 +227,12 @@ macro_rules! for_each_model {
             Chiang: Chiang;
         }
     };
+    (@ $callback:ident [d_eon $($names:tt)*] $($models:tt)*) => {
+        $crate::for_each_model! { @ $callback [$($names)*] $($models)*
+            /// D'Eon's far field.
+            DEon: DEon;
+        }
+    };
     (@ $callback:ident [] $($models:tt)*) => {
         $crate::with_every_sampler! { $callback $($models)* }
     };
@@ -238,7 +244,7 @@ macro_rules! for_each_model {
 #[macro_export]
 macro_rules! chosen_models {
     ($callback:ident) => {
-        $crate::for_each_model! { @ $callback [gaussian cauchy kajiya_kay chiang] }
+        $crate::for_each_model! { @ $callback [gaussian cauchy kajiya_kay chiang d_eon] }
     };
 }
 
@@ -276,6 +282,15 @@ macro_rules! chosen_models {
 macro_rules! chosen_models {
     ($callback:ident) => {
         $crate::for_each_model! { @ $callback [chiang] }
+    };
+}
+
+#[cfg(hairis_one = "d-eon")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! chosen_models {
+    ($callback:ident) => {
+        $crate::for_each_model! { @ $callback [d_eon] }
     };
 }
 

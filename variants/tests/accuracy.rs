@@ -1,4 +1,4 @@
-//! Kajiya and Kay's fibre and the energy-conserving one against their formulas in `f64` at 10,000 random hits each, with
+//! Kajiya and Kay's fibre, the energy-conserving one and d'Eon's far field against their formulas in `f64` at 10,000 random hits each, with
 //! grazing directions, offsets at both edges and narrow lobes: every bound is derived, and stated beside it.
 //!
 //! A direction that is an angle `d` off changes a lobe by `|d ln M / d theta| d`. The highlights are bells, of exponent E in
@@ -12,10 +12,12 @@ use hairis::model::{LobeEval, Model};
 use hairis::simd::Level;
 use hairis::{Bsdf, Eval, Hit, Lobe, Material, PerLobe, Sample};
 use hairis_conformance::comparison::{LargestError, relative};
-use hairis_reference::{ChiangReference, KajiyaKayReference, LobeAt, Reference, Selection};
-use hairis_variants::KajiyaKay;
+use hairis_reference::{
+    ChiangReference, DEonReference, KajiyaKayReference, LobeAt, Reference, Selection,
+};
 use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParams, Shifts};
 use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc, KajiyaKayParams};
+use hairis_variants::{DEon, DEonDesc, DEonParams, KajiyaKay};
 
 const CASES: usize = 10_000;
 /// Below this lobes approach the end of `gaussian`, from where on they are 0.
@@ -325,4 +327,62 @@ fn kajiya_and_kay_s_fibre_is_as_accurate_as_its_exponent_allows() {
         errors.check();
         plain.check("S or density over 1e-5", 1.0);
     }
+}
+
+#[test]
+fn d_eon_s_far_field_is_as_accurate_as_its_widths_allow() {
+    let mut draws = Draws(0xde0);
+    let mut errors = Errors::default();
+    let mut seen = 0;
+    for case in 0..CASES {
+        let share = |x: f64| narrow(x * x);
+        let desc = DEonDesc {
+            roughness: roughness(&mut draws).max(0.01),
+            tilt: narrow(draws.between(-0.35, 0.35)),
+            eta: if case % 2 == 0 {
+                1.55
+            } else {
+                narrow(draws.between(1.1, 3.0))
+            },
+            sigma_a: draws.xi3().map(|x| 6.0 * x * x),
+            diffuse: if case % 4 < 2 {
+                0.0
+            } else {
+                share(draws.xi().into())
+            },
+            diffuse_color: draws.xi3(),
+        };
+        let params = DEonParams::new(&desc).unwrap();
+        let mut hit = hit(&mut draws);
+        hit.h = 0.0;
+        let bsdf = Material::new(&DEon, &params).prepare(hit);
+        let wo = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
+        let book = DEonReference::prepare(&params.desc().map(f64::from), wo);
+        let (_, samples, mut wi) = directions(&bsdf, &mut draws);
+        // Next to half a turn from wo, where R and the diffuse lobe vanish.
+        let turn = draws.sign() * (PI - draws.scale(1e-8, 1e-2));
+        wi[7] = direction(inclination(&mut draws), wo[2].atan2(wo[1]) + turn);
+        let bounds_at = |d: [f64; 3]| Some(book.lobe_errors(d)?.0.map(|[value, _]| value));
+        for (k, evals) in evals(&bsdf, &wi).into_iter().enumerate() {
+            let d = double(wi[k]);
+            // Where rounding decides on which side of TT's last azimuth a direction is, there is no bound.
+            let Some(bounds) = bounds_at(d) else { continue };
+            seen += 1;
+            let at = || format!("{:?} {desc:?} {hit:?}", wi[k]);
+            errors.see_eval(
+                (bsdf.lobes(wi[k]), evals),
+                (book.lobes(d), book.eval_pdf(d)),
+                (bounds, book.error_bound(d).unwrap()),
+                &at,
+            );
+            if let Some(sample) = &samples[k] {
+                let d = double(sample.wi);
+                let Some(bounds) = bounds_at(d) else { continue };
+                let of = (bounds, book.probabilities());
+                errors.see_weight(sample, (book.lobes(d), book.eval_pdf(d)), of, &at);
+            }
+        }
+    }
+    assert!(seen > 79_000, "directions with a bound: {seen}");
+    errors.check();
 }

@@ -6,8 +6,8 @@ use hairis::params::Rule;
 use hairis::simd::Level;
 use hairis::{Conserving, HairParams, Hit, Hit8, Lobe, LobeMask, Material, Material8, ParamError};
 use hairis_variants::{
-    AnyMaterial8, ChiangDesc, ChiangParams, Field, KajiyaKayParams, Kind, ModelId, Parameters,
-    Registered, Visitor,
+    AnyMaterial8, ChiangDesc, ChiangParams, DEonParams, Field, KajiyaKayParams, Kind, ModelId,
+    Parameters, Registered, Visitor,
 };
 
 #[test]
@@ -77,6 +77,7 @@ fn parameters_are_their_fields() {
     fields_hold::<HairParams>();
     fields_hold::<KajiyaKayParams>();
     fields_hold::<ChiangParams>();
+    fields_hold::<DEonParams>();
 }
 
 #[test]

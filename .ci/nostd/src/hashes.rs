@@ -17,7 +17,7 @@ use hairis::{
 };
 use hairis_variants::chiang::{FarField, OffsetNodes};
 use hairis_variants::{
-    Cauchy, Chiang, ChiangDesc, ChiangParams, KajiyaKay, KajiyaKayDesc, Parameters,
+    Cauchy, Chiang, ChiangDesc, ChiangParams, DEon, KajiyaKay, KajiyaKayDesc, Parameters,
 };
 use hash::Hash;
 
@@ -296,6 +296,7 @@ fn models() {
     every_entry(KajiyaKay, "kajiya-kay");
     every_entry(Chiang::<false>, "chiang");
     every_entry(Chiang::<true>, "chiang/by-channel");
+    every_entry(DEon, "d-eon");
 }
 
 /// The elementary functions, on eight lanes.

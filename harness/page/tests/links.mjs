@@ -44,7 +44,7 @@ export async function links({ open, check }) {
     [first.replace('"phi":0', '"phi":1e999'), 'cut.phi must be a number in [-180, 180], got Infinity'],
     [
       altered('materials.0.model', '__proto__'),
-      'materials[0].model must be one of gaussian, cauchy, kajiya-kay, chiang, got "__proto__"',
+      'materials[0].model must be one of gaussian, cauchy, kajiya-kay, chiang, d-eon, got "__proto__"',
     ],
     [altered('materials.1.word', 'best'), 'materials[1].word must be one of published, matched, got "best"'],
     [altered('materials.0.values', null), 'materials[0].values must be an object, got null'],

@@ -27,7 +27,7 @@ fn exit_codes_tell_right_from_wrong() {
 
 #[test]
 fn tables_have_a_name_for_each_column() {
-    for model in ["chiang", "gaussian", "cauchy", "kajiya-kay"] {
+    for model in ["chiang", "gaussian", "cauchy", "kajiya-kay", "d-eon"] {
         let flags = [
             "vectors",
             "--model",

@@ -48,7 +48,7 @@ fn assert_wrong(what: &str, answers: &str, wrong: &[&str]) {
 
 #[test]
 fn right_implementations_raise_no_alarm() {
-    for model in ["chiang", "gaussian", "cauchy", "kajiya-kay"] {
+    for model in ["chiang", "gaussian", "cauchy", "kajiya-kay", "d-eon"] {
         let cases = cases(model);
         assert_wrong(model, &answered(&cases, |_, _| ()), &[]);
         // The kernels, in single precision.

@@ -73,7 +73,7 @@ typedef struct hairis_error {
 } hairis_error;
 
 typedef struct hairis_model_info {
-  char name[32];   /* "gaussian", "cauchy", "kajiya-kay", "chiang"; entries with other samplers share it */
+  char name[32];   /* "gaussian", "cauchy", "kajiya-kay", "chiang", "d-eon"; entries with other samplers share it */
   char choice[32]; /* the field that selects among them, "" if there is one entry */
   char word[32];   /* the word of that field that selects this entry */
   char lobe_names[4][16];

@@ -6,7 +6,7 @@ use crate::gradients::Gradients;
 use hairis::columns::HitColumns;
 use hairis::simd::Level;
 use hairis::{Gaussian, Matched, ParamError, Published};
-use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Values};
+use hairis_variants::{AllCauchy, Cauchy, Chiang, DEon, KajiyaKay, ModelId, Values};
 
 macro_rules! any {
     ($($(#[$doc:meta])* $variant:ident: $model:ty;)*) => {

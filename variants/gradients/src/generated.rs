@@ -6,7 +6,7 @@ use core::marker::PhantomData;
 use hairis::f32x8;
 use hairis::simd::{Kernel, LaneStruct, Lanes, Level, Path};
 use hairis::{Gaussian, Matched, Published};
-use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Registered};
+use hairis_variants::{AllCauchy, Cauchy, Chiang, DEon, KajiyaKay, ModelId, Registered};
 
 /// Packets whose derivatives are summed in single precision.
 const BLOCK: usize = 64;

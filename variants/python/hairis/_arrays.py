@@ -129,7 +129,7 @@ class Hair:
 
     @property
     def model(self) -> str:
-        """Name of the model: "gaussian", "cauchy", "kajiya-kay" or "chiang"."""
+        """Name of the model: "gaussian", "cauchy", "kajiya-kay", "chiang" or "d-eon"."""
         return self._material.model
 
     @property

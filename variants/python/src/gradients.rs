@@ -6,7 +6,7 @@ use hairis::columns::HitColumns;
 use hairis::model::Model;
 use hairis::{Gaussian, Matched, ParamError, Published};
 use hairis_gradients::{GradColumns, GradError, Gradients, Weights};
-use hairis_variants::{AllCauchy, Cauchy, Chiang, KajiyaKay, ModelId, Values};
+use hairis_variants::{AllCauchy, Cauchy, Chiang, DEon, KajiyaKay, ModelId, Values};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

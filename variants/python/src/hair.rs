@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 /// Parameters
 /// ----------
 /// model : str
-///     "gaussian", "cauchy", "kajiya-kay" or "chiang"; `hairis.models()` lists them with their fields.
+///     "gaussian", "cauchy", "kajiya-kay", "chiang" or "d-eon"; `hairis.models()` lists them with their fields.
 /// preset : str, optional
 ///     Name of values for all fields: "brown", "blond" and so on. Without a preset, fields have the model's defaults.
 /// energy : {"conserving", "raw", "scaled"}

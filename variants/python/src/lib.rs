@@ -48,7 +48,7 @@ fn level() -> &'static str {
 /// Examples
 /// --------
 /// >>> sorted(hairis.models())
-/// ['cauchy', 'chiang', 'gaussian', 'kajiya-kay']
+/// ['cauchy', 'chiang', 'd-eon', 'gaussian', 'kajiya-kay']
 /// >>> hairis.models()["gaussian"]["choices"][:2]
 /// ['published', 'matched']
 #[pyfunction]

@@ -89,7 +89,7 @@ impl Material {
         text::json(self.id, &self.given())
     }
 
-    /// Name of the model: "gaussian", "cauchy", "kajiya-kay" or "chiang".
+    /// Name of the model: "gaussian", "cauchy", "kajiya-kay", "chiang" or "d-eon".
     #[getter]
     fn model(&self) -> &'static str {
         self.id.name()

@@ -19,8 +19,11 @@ IN_PLACE: list[dict[str, Any]] = [
     {"melanin_amount": (0.4, 0.3)},
     {"cuticle_angle": 0.52},
 ]
-# The default of tints is the end of their range, beyond which there is no difference.
-TINTS: dict[str, Any] = {"tint_r": (0.9, 0.7, 0.8), "tint_tt": (0.8, 0.9, 0.6), "tint_trt": (0.5, 0.9, 0.7)}
+# Fields whose default is the end of their range, beyond which there is no difference.
+INSIDE: dict[str, dict[str, Any]] = {
+    "chiang": {"tint_r": (0.9, 0.7, 0.8), "tint_tt": (0.8, 0.9, 0.6), "tint_trt": (0.5, 0.9, 0.7)},
+    "d-eon": {"diffuse": 0.2, "diffuse_color": (0.7, 0.6, 0.5)},
+}
 
 
 def case(n: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
@@ -33,7 +36,7 @@ def case(n: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.f
 @pytest.mark.parametrize(("model", "preset", "more"), DEFAULTS + [("chiang", "brown", more) for more in IN_PLACE])
 def test_fields_against_differences(model: str, preset: str, more: dict[str, Any]) -> None:
     wo, wi, d_value, h = case(3000)
-    hair = hairis.Material(model, preset, energy="raw", **more, **(TINTS if model == "chiang" else {}))
+    hair = hairis.Material(model, preset, energy="raw", **more, **INSIDE.get(model, {}))
     columns, d_fields = hair.eval_grad(wo, wi, d_value, h)
     assert d_fields.keys() == {name for name, value in hair.fields.items() if not isinstance(value, str)}
     assert (bits(columns["value"]) == bits(hair.eval_hits(wo, wi, h)["value"])).all()

@@ -9,11 +9,12 @@ use crate::interface::{LobeAt, Reference, ReferenceSample};
 use crate::real::Real;
 use crate::steps::{Fixed, GRAZING, choose, finish_sample, fixed, inclination, mix, sum_to_one};
 use azimuth::Logistic;
-use cone::Cone;
 use hairis::{Lobe, PerLobe};
 use hairis_variants::ChiangDesc;
 
+pub(crate) use azimuth::wrap;
 pub use bessel::bessel_i0_scaled;
+pub(crate) use cone::Cone;
 pub use parameters::{ChiangFormulas, Selection};
 
 /// Lobe of all paths with two and more internal reflections, TRRT and beyond.
@@ -205,7 +206,7 @@ impl<T: Real> ChiangReference<T> {
         if lobe == REST {
             T::from_f64(0.5) / T::PI
         } else {
-            self.logistics[lobe].density(azimuth::wrap(phi - self.centres[lobe]))
+            self.logistics[lobe].density(wrap(phi - self.centres[lobe]))
         }
     }
 

@@ -127,7 +127,8 @@ pub trait Reference<T: Real>: Debug + Send + Sync {
     }
 
     /// Returns the relative errors that each lobe's value and density may have in the kernels, which compute in single precision. They
-    /// follow from the rounding of angles and the steepness of the lobe at `wi`. `None` unless the formulas have them, and next to the axis.
+    /// follow from the rounding of angles and the steepness of the lobe at `wi`. `None` unless the formulas have them, next to the axis, and
+    /// where rounding decides whether a lobe has the azimuth.
     #[must_use]
     fn lobe_errors(&self, wi: [T; 3]) -> Option<PerLobe<[T; 2]>> {
         let _ = wi;

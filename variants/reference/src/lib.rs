@@ -10,6 +10,7 @@
 //! | [`Matched`](hairis::Matched) over any bell | [`MatchedReference`] | ours |
 //! | [`KajiyaKay`](hairis_variants::KajiyaKay) | [`KajiyaKayReference`] | Kajiya & Kay 1989 |
 //! | [`Chiang`](hairis_variants::Chiang) | [`ChiangReference`] | Chiang et al. 2016 |
+//! | [`DEon`](hairis_variants::DEon) | [`DEonReference`], and as RTXCR has it [`RtxcrReference`] | d'Eon 2022 |
 //!
 //! All implement [`Reference`], and `Box<dyn Reference<f64>>` is the handle of a model chosen at run time: see [`reference()`] for
 //! the models of the registry, and [`HairFormulas`] for the published model. [`Formulas`] pairs a kernel with its formulas.
@@ -23,6 +24,7 @@
 
 pub mod agreement;
 mod chiang;
+mod d_eon;
 pub mod errata;
 mod interface;
 mod kajiya_kay;
@@ -33,6 +35,7 @@ mod registry;
 mod steps;
 
 pub use chiang::{ChiangConstants, ChiangFormulas, ChiangReference, Selection, bessel_i0_scaled};
+pub use d_eon::{DEonReference, RtxcrFaults, RtxcrReference};
 pub use interface::{LobeAt, Reference, ReferenceSample};
 pub use kajiya_kay::{KajiyaKayConstants, KajiyaKayReference, cosine_power_integral};
 pub use published::{CauchyDensity, HairFormulas, HairReference, MatchedReference, Shape};

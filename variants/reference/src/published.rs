@@ -25,6 +25,7 @@ use hairis::params::HairDesc;
 use hairis::{Lobe, PerLobe};
 
 pub use cauchy::CauchyDensity;
+pub(crate) use cut::Cut;
 pub use formulas::HairFormulas;
 pub use matched::MatchedReference;
 pub use shape::Shape;

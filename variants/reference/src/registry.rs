@@ -1,6 +1,7 @@
 //! Formulas of the models of the registry.
 
 use crate::chiang::{ChiangConstants, ChiangFormulas, ChiangReference, Selection};
+use crate::d_eon::{DEonReference, absorption_of_melanin};
 use crate::interface::Reference;
 use crate::kajiya_kay::{KajiyaKayConstants, KajiyaKayReference, cosine_power_integral};
 use crate::published::{HairReference, MatchedReference, Shape};
@@ -10,8 +11,9 @@ use core::fmt::Debug;
 use hairis::params::HairDesc;
 use hairis::{Gaussian, HairParams, Lobe, Matched, ParamError, Published};
 use hairis_variants::{
-    AllCauchy, Cauchy, Chiang, ChiangDesc, ChiangParams, KajiyaKay, KajiyaKayDesc, KajiyaKayParams,
-    ModelId, Parameters as _, Registered, RegisteredBell, Values, hair_desc,
+    AllCauchy, Cauchy, Chiang, ChiangDesc, ChiangParams, DEon, DEonDesc, DEonParams, KajiyaKay,
+    KajiyaKayDesc, KajiyaKayParams, ModelId, Parameters as _, Registered, RegisteredBell, Values,
+    hair_desc,
 };
 
 /// Model of the registry, paired with its formulas.
@@ -379,5 +381,56 @@ impl<const BY_CHANNEL: bool> Formulas for Chiang<BY_CHANNEL> {
         });
         let peak = peaks[0];
         [Self::ACCURACY.value * (-12.0_f64).exp() * peak / v.hypot(w); 3]
+    }
+}
+
+impl Formulas for DEon {
+    type Constants<T: Real> = DEonDesc<T>;
+    type Point<T: Real> = DEonReference<T>;
+    // `1e-5 + 5e-7 / w`, where the narrowest w is that of R at its edge, at a roughness of .1.
+    const ACCURACY: Accuracy = Accuracy {
+        value: 4.6e-5,
+        pdf: 4.6e-5,
+        sample_value: 4.6e-5,
+        sample_pdf: 4.6e-5,
+        sample_weight: 1e-4,
+        cdf: 0.0,
+        slack_in_pdf: true,
+    };
+
+    #[inline]
+    fn formulas<T: Real>(params: &DEonParams) -> DEonDesc<T> {
+        params.desc().map(T::from_f32)
+    }
+
+    #[inline]
+    fn exact_formulas<T: Real>(_params: &DEonParams, exact: &Values<T>) -> DEonDesc<T> {
+        let parameters = DEonDesc::of_values(exact);
+        if exact.has("melanin") {
+            DEonDesc {
+                sigma_a: absorption_of_melanin(exact.get("melanin")),
+                ..parameters
+            }
+        } else {
+            parameters
+        }
+    }
+
+    #[inline]
+    fn point<T: Real>(constants: &DEonDesc<T>, wo: [T; 3], _h: T) -> DEonReference<T> {
+        DEonReference::prepare(constants, wo)
+    }
+
+    /// Returns the slack of the lobes, whose errors grow with their exponent: from `exp(-12)` of the peak down they are absolute. So is the
+    /// error of TT next to its last azimuth, where a rounded azimuth does not determine it.
+    fn slack(params: &DEonParams, wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
+        let desc = params.desc().map(f64::from);
+        let [_, v, w] = wi;
+        let k = wo[1].hypot(wo[2]).max(1e-3);
+        let peak = 0.2 / desc.roughness / k;
+        let tail = Self::ACCURACY.value * (-12.0_f64).exp() * peak / v.hypot(w);
+        DEonReference::prepare(&desc, wo)
+            .slack(wi)
+            .map(|edge| edge + tail)
     }
 }

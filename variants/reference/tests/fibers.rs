@@ -3,6 +3,8 @@
 mod chiang;
 mod chiang_lobes;
 mod chiang_sampling;
+mod d_eon;
 mod errata;
 mod kajiya_kay;
+mod rtxcr;
 pub(crate) mod support;

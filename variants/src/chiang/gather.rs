@@ -135,11 +135,11 @@ impl<L: Lanes<Stored = L>> ChiangMaterial<L> {
 }
 
 /// Packet of the four lobes: R, TT, TRT and the rest.
-pub(super) type Four<L> = Pair<Pair<L>>;
+pub(crate) type Four<L> = Pair<Pair<L>>;
 
 /// Reads the four numbers of a table as one packet.
 #[inline(always)]
-pub(super) fn four<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> Four<L> {
+pub(crate) fn four<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> Four<L> {
     Pair(
         Pair(x[0].lanes(), x[1].lanes()),
         Pair(x[2].lanes(), x[3].lanes()),
@@ -148,13 +148,13 @@ pub(super) fn four<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> Four<L> {
 
 /// Repeats one number for all four lobes.
 #[inline(always)]
-pub(super) fn same<L: Lanes>(x: L) -> Four<L> {
+pub(crate) fn same<L: Lanes>(x: L) -> Four<L> {
     Pair(Pair(x, x), Pair(x, x))
 }
 
 /// Splits a packet into the number of each lobe.
 #[inline(always)]
-pub(super) fn apart<L: Lanes>(Pair(Pair(a, b), Pair(c, d)): Four<L>) -> [L; 4] {
+pub(crate) fn apart<L: Lanes>(Pair(Pair(a, b), Pair(c, d)): Four<L>) -> [L; 4] {
     [a, b, c, d]
 }
 

@@ -2,33 +2,11 @@
 
 use super::ChiangPrepared;
 use super::gather::{Four, apart, four, same};
+use crate::cone::{SEAM, bessel};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 use hairis::model::Direction;
-use hairis::model::math::{atan_eighth_turn, gaussian, polynomial};
+use hairis::model::math::{atan_eighth_turn, gaussian};
 use hairis::simd::{Broadcast, Lanes, Pair, Schedule};
-
-/// Argument below which the scaled Bessel function is a series in `x^2`, and above which it is a series in `1 / x`.
-const SEAM: f32 = 5.5;
-/// Coefficients of `I0(x)` in powers of `x^2`, for `x` below the seam.
-const SERIES: [f32; 8] = [
-    0.999_999_964_93,
-    0.250_000_247_14,
-    0.015_624_746_521,
-    4.341_184_831_1e-4,
-    6.766_766_700_5e-6,
-    6.908_044_545e-8,
-    4.144_287_593_5e-10,
-    3.643_167_776e-12,
-];
-/// Coefficients of `exp(-x) I0(x) sqrt(x)` in powers of `1 / x`, for `x` above the seam.
-const TAIL: [f32; 6] = [
-    0.398_942_300_81,
-    0.049_868_737_73,
-    0.027_805_208_42,
-    0.037_460_558_19,
-    -0.055_432_330_86,
-    0.535_620_729_8,
-];
 
 /// Returns the density `M N` of each lobe, per steradian, and `1 / cos theta_i`.
 ///
@@ -91,13 +69,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
     let small = x.lt(Four::splat(SEAM));
     // 1 / sqrt(x).
     let root = same(inv_root_i) * four(&prepared.spread);
-    // Each is clamped to bounds that it keeps where it is selected; elsewhere its powers would overflow.
-    let (below, above) = (x.min(Four::splat(8.0)), root.min(Four::splat(1.0)));
-    let bessel = Four::select(
-        small,
-        polynomial(below * below, SERIES),
-        polynomial(above * above, TAIL) * root,
-    );
+    let bessel = bessel(small, x, root);
     let sum = chord_sq.mul_add(four(&m.inv_variance), exponent) + Four::keep(small, x + x);
     L::stage("density of each lobe: M N");
     // Kept apart, because in vectors of three lobes the unused number would overflow.

@@ -1,6 +1,7 @@
 //! Sampling of a direction of one lobe by three uniform numbers.
 
 use super::ChiangPrepared;
+use crate::cone;
 use core::f32::consts::PI;
 use hairis::model::Direction;
 use hairis::model::math::{log2, log2_one_plus, sin_cos_half_turn};
@@ -22,17 +23,12 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
     let cut = C::look_up_three(&m.cut, lobe);
     let by = C::look_up_three(&m.minus_v_ln_2, lobe);
     let drop = zero.max((log2_one_plus(-(xi[1] * cut)) * by).min(two));
-    let radius = (drop * (two - drop)).sqrt();
-    let (minus_cos, sin) = sin_cos_half_turn((xi[2] - 0.5) * PI);
-    let (towards, across) = (-(radius * minus_cos), radius * sin);
-    let (sin_cone, cos_cone) = (
+    let around = cone::about(drop, xi[2]);
+    let cone = [
         C::look_up(&prepared.sin_cone, lobe),
         C::look_up(&prepared.cos_cone, lobe),
-    );
-    let along = one - drop;
-    let sin_i = towards.mul_sub(cos_cone, along * sin_cone);
-    let plane = along.mul_add(cos_cone, towards * sin_cone);
-    let cos_i = plane.mul_add(plane, across * across).sqrt();
+    ];
+    let theta_i = cone::inclination(drop, around, cone);
 
     L::stage("azimuth: the trimmed logistic by inversion");
     // The trimmed logistic by inversion; the azimuth of the rest is uniform.
@@ -62,5 +58,5 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
         C::look_up(&prepared.azimuth_w, lobe),
     );
     let phi = [v.mul_add(sin_x, w * cos_x), v.mul_sub(cos_x, w * sin_x)];
-    Direction::from_sin_cos([sin_i, cos_i], phi)
+    Direction::from_sin_cos(theta_i, phi)
 }

@@ -5,7 +5,7 @@ use hairis::params::{Pigments, melanin_concentrations};
 
 /// Returns the derivatives by concentrations of melanin, of which the absorption is a sum, given those by the absorption.
 #[inline]
-pub(super) fn by_melanin(pigments: &Pigments, by_absorption: [f64; 3]) -> [f64; 2] {
+pub(crate) fn by_melanin(pigments: &Pigments, by_absorption: [f64; 3]) -> [f64; 2] {
     [pigments.eumelanin, pigments.pheomelanin].map(|unit| dot(unit.map(f64::from), by_absorption))
 }
 

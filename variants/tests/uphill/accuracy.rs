@@ -109,6 +109,7 @@ fn any(model: ModelId, at: &mut Coordinates<'_>) -> Point {
     let values = match model {
         ModelId::KajiyaKay => any_kajiya_kay(at),
         ModelId::Chiang => any_chiang(at),
+        ModelId::DEon => any_d_eon(at),
         _ => any_hair(at),
     };
     Point::new(model, values, at.hit(DRAWN))
@@ -138,6 +139,22 @@ fn any_chiang(at: &mut Coordinates<'_>) -> Values {
         ("sigma_a", 3, [1e-3, 6.0], true),
         ("width_m", 3, [0.5, 2.0], true),
         ("width_n", 3, [0.5, 2.0], true),
+    ] {
+        values = at.numbers(values, name, count, [lo, hi], is_log);
+    }
+    values
+}
+
+/// Returns fibres of any roughness, tilt and index, with absorptions up to 6.
+fn any_d_eon(at: &mut Coordinates<'_>) -> Values {
+    let mut values = at.values(ModelId::DEon);
+    let quarter = f64::from(core::f32::consts::FRAC_PI_4);
+    for (name, count, [lo, hi], is_log) in [
+        ("roughness", 1, [0.01, 1.0], true),
+        ("tilt", 1, [-quarter, quarter], false),
+        ("eta", 1, [1.1, 3.0], false),
+        ("sigma_a", 3, [1e-3, 6.0], true),
+        ("diffuse", 1, [0.0, 1.0], false),
     ] {
         values = at.numbers(values, name, count, [lo, hi], is_log);
     }
@@ -181,7 +198,7 @@ fn over_bound(model: ModelId, at: &mut Coordinates<'_>, arithmetic: Arithmetic) 
         return [0.0; 2];
     }
     let mut truth = Truth::new(&point, &*formulas, wi);
-    if matches!(model, ModelId::KajiyaKay | ModelId::Chiang) {
+    if matches!(model, ModelId::KajiyaKay | ModelId::Chiang | ModelId::DEon) {
         // The end of the bells alone: the bound by argument grows with their exponents.
         (truth.slack, truth.pdf_slack) = ([LEAST; 3], LEAST);
     }

@@ -275,7 +275,11 @@ fn bound_over_mean(model: ModelId, at: &mut Coordinates<'_>, arithmetic: Arithme
 
 /// Returns the mean weight of a sample over its bound.
 fn over_bound(model: ModelId, at: &mut Coordinates<'_>, arithmetic: Arithmetic) -> f64 {
-    let point = weighed_point(model, at);
+    let point = if model == ModelId::DEon {
+        Point::random(model, at, POLE)
+    } else {
+        weighed_point(model, at)
+    };
     let bound = point.reference().weight_bound(LobeMask::ALL);
     let drawn = samples(&point, at.xi3(), arithmetic).into_iter().flatten();
     most(drawn.map(|sample| {
@@ -318,7 +322,10 @@ fn kajiya_kay_weights(point: &Point) -> [f64; 3] {
 
 /// Returns how far the albedos of a fibre without absorption sum from 1.
 fn furnace_error(model: ModelId, at: &mut Coordinates<'_>, arithmetic: Arithmetic) -> f64 {
-    let values = at.values(model).with("sigma_a", &[0.0; 3]);
+    let mut values = at.values(model).with("sigma_a", &[0.0; 3]);
+    if values.index("diffuse_color").is_some() {
+        values = values.with("diffuse_color", &[1.0; 3]);
+    }
     let point = Point::new(model, values, at.hit(POLE));
     let sums = channels(prepared(&point, arithmetic).albedo());
     most(sums.map(|sum| (sum - 1.0).abs()))
@@ -347,7 +354,13 @@ pub(crate) fn bounds(model: ModelId) -> Vec<Bound> {
     // Either of the two values has the error of a value.
     let exchanged = 2.0 * hairis_reference::accuracy(model).value;
     let is_hair = model.fields().iter().any(|field| field.name == "alpha");
-    let mut all = vec![integral];
+    // The width of d'Eon's R depends on the azimuth, so that its density is no product.
+    let is_product = model != ModelId::DEon;
+    let mut all = if is_product {
+        vec![integral]
+    } else {
+        Vec::new()
+    };
     match (is_hair, model.is_default()) {
         (true, true) => all.extend([
             bound("albedo", ALBEDO, hair_albedo_error),
@@ -377,6 +390,11 @@ pub(crate) fn bounds(model: ModelId) -> Vec<Bound> {
                 1.0 + 1e-5,
                 move |at, arithmetic| over_stated(model, at, arithmetic, kajiya_kay_weights),
             ),
+        ]),
+        (false, _) if model == ModelId::DEon => all.extend([
+            bound("albedo", 1e-5, albedo_error),
+            bound("albedo without absorption: off 1", 1.5e-6, furnace_error),
+            bound("weight over its bound", 1.0 + 1e-4, over_bound),
         ]),
         (false, _) => all.extend([
             bound("albedo", 1e-5, albedo_error),

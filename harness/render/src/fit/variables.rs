@@ -11,8 +11,8 @@ const STEP: f64 = 0.05;
 const MOST_LOG: f64 = 10.0;
 /// Number that takes the place of 0 if a factor on it is to be found.
 const LEAST: f64 = 1e-3;
-/// Fields that stay as they are unless freed, besides extras: neither colours, widths nor shifts of lobes.
-const HELD: &[&str] = &["i_r", "phi_g", "i_g", "eta"];
+/// Fields that stay as they are unless freed, besides extras: neither colours, widths nor shifts of fibres' lobes.
+const HELD: &[&str] = &["i_r", "phi_g", "i_g", "eta", "diffuse", "diffuse_color"];
 /// Fields whose numbers share factors, either by group, or by channel with this power.
 const TIED: &[(&str, Tie)] = &[
     ("alpha", Tie::Group("shifts")),

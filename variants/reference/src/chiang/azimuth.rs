@@ -49,7 +49,7 @@ impl<T: Real> Logistic<T> {
 }
 
 /// Moves `x` to `[-pi, pi]` by whole turns.
-pub(super) fn wrap<T: Real>(x: T) -> T {
+pub(crate) fn wrap<T: Real>(x: T) -> T {
     let turn = T::PI + T::PI;
     x - turn * (x / turn).round()
 }

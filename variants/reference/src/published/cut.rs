@@ -5,12 +5,12 @@ use crate::real::Real;
 
 /// Bell cut to an interval, with its cdf and the inverse of the cdf.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Cut<T> {
+pub(crate) struct Cut<T> {
     gaussian: bool,
     lo: T,
     hi: T,
     /// Integral of the bell of unit width and peak over the interval.
-    pub(super) area: T,
+    pub(crate) area: T,
 }
 
 /// Returns the probability that a standard normal number is above `x`.
@@ -20,7 +20,7 @@ fn above<T: Real>(x: T) -> T {
 
 impl<T: Real> Cut<T> {
     /// Makes the bell on `[lo, hi]`, in widths from its centre.
-    pub(super) fn new(shape: Shape, lo: T, hi: T) -> Self {
+    pub(crate) fn new(shape: Shape, lo: T, hi: T) -> Self {
         let gaussian = shape == Shape::Gaussian;
         let unit = Self {
             gaussian,
@@ -38,7 +38,7 @@ impl<T: Real> Cut<T> {
     }
 
     /// Integrates the bell from `lo` to `x`.
-    pub(super) fn below(&self, x: T) -> T {
+    pub(crate) fn below(&self, x: T) -> T {
         let (zero, one) = (T::default(), T::from_f64(1.0));
         if !self.gaussian {
             return (x - self.lo).atan2(one + self.lo * x);
@@ -63,7 +63,7 @@ impl<T: Real> Cut<T> {
     }
 
     /// Returns the probability of a number of at most `x`.
-    pub(super) fn cdf(&self, x: T) -> T {
+    pub(crate) fn cdf(&self, x: T) -> T {
         let x = x.max(self.lo).min(self.hi);
         let (below, beyond) = (self.below(x), self.beyond(x));
         if below < beyond {
@@ -75,7 +75,7 @@ impl<T: Real> Cut<T> {
 
     /// Returns the point whose [`cdf`](Self::cdf) is `xi`: for a Cauchy by turning the nearer end by its part of the angle, and for
     /// a Gaussian by bisection.
-    pub(super) fn sample(&self, xi: T) -> T {
+    pub(crate) fn sample(&self, xi: T) -> T {
         let (one, half) = (T::from_f64(1.0), T::from_f64(0.5));
         if !self.gaussian {
             let (end, turn) = if xi < half {
