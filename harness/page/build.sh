@@ -8,6 +8,10 @@ target=$(realpath -m "${CARGO_TARGET_DIR:-$root/target}")
 out=$target/page
 # The flags of .cargo/config.toml, and no others.
 unset RUSTFLAGS
+if command -v npm > /dev/null; then # the module of the example for three.js
+  cargo build --release --locked --features dual --target-dir "$target/page-build" "$@"
+  cp "$target/page-build/wasm32-unknown-unknown/release/hairis_page.wasm" "$target/page-build/dual.wasm"
+fi
 cargo build --release --locked --target-dir "$target/page-build" "$@"
 rm -rf "$out"
 mkdir -p "$out"

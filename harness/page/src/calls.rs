@@ -3,9 +3,10 @@
 use crate::memory::COLUMN;
 use crate::slot::Slot;
 use glam::Vec3;
-use hairis::dual_scattering::DualScattering;
 use hairis::simd::{LaneStruct, Path, f32x8};
-use hairis::{Bsdf, Hit, Lobe, LobeMask, Vec3x8};
+use hairis::{Bsdf, Hit, Lobe, Vec3x8};
+#[cfg(feature = "dual")]
+use hairis::{LobeMask, dual_scattering::DualScattering};
 use hairis_variants::{ModelId, Registered, Visitor};
 
 /// Columns that a function reads its arguments from and writes its results to.
@@ -18,6 +19,7 @@ pub(crate) struct Calls {
     pub(crate) hits: fn(&Slot, &mut Columns, usize),
     pub(crate) albedos: fn(&Slot, &mut Columns, usize),
     pub(crate) constants: fn(&Slot, &mut [f32]) -> usize,
+    #[cfg(feature = "dual")]
     pub(crate) dual: fn(&Slot, &mut [f32]) -> usize,
 }
 
@@ -33,6 +35,7 @@ impl Calls {
                     hits: hits::<M>,
                     albedos: albedos::<M>,
                     constants: constants::<M>,
+                    #[cfg(feature = "dual")]
                     dual: dual::<M>,
                 }
             }
@@ -146,6 +149,7 @@ fn constants<M: Registered>(slot: &Slot, column: &mut [f32]) -> usize {
     count
 }
 
+#[cfg(feature = "dual")]
 fn dual<M: Registered>(slot: &Slot, column: &mut [f32]) -> usize {
     if const { !is_first::<M>() } {
         return 0;

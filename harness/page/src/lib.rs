@@ -162,6 +162,7 @@ pub extern "C" fn constants(slot: usize) -> usize {
 
 /// Measures dual scattering of a slot's material, scaled so that no viewer gets back more light than arrives, and writes its averages to the
 /// first column of `work`, in the order in which the generated shader takes them. Returns their number.
+#[cfg(feature = "dual")]
 #[unsafe(no_mangle)]
 pub extern "C" fn dual_scattering(slot: usize) -> usize {
     let Memory { slots, work, .. } = memory();

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Puts the example together in target/page/three, beside the page whose module and shaders it uses: build.sh [ARGUMENT OF CARGO BUILD...].
+# Puts the example together in target/page/three, beside the page whose shaders it uses: build.sh [ARGUMENT OF CARGO BUILD...].
 # Needs what harness/page/build.sh needs, and npm. $RENDER is the hairis-render that grows the hair.
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -7,10 +7,11 @@ root=$(cd ../../../.. && pwd)
 target=$(realpath -m "${CARGO_TARGET_DIR:-$root/target}")
 out=$target/page/three work=$target/three-build
 # The page's script ends with this one.
-[ -e "$target/page/hairis.wasm" ] || exec "$root/harness/page/build.sh" "$@"
+[ -e "$target/page-build/dual.wasm" ] && [ -e "$target/page/hairis.wasm" ] || exec "$root/harness/page/build.sh" "$@"
 mkdir -p "$out" "$work"
 cp package.json "$work"
 cp package.json "$out"
+cp "$target/page-build/dual.wasm" "$out/hairis.wasm"
 npm install --silent --no-audit --no-fund --no-package-lock --prefix "$work"
 web=$root/harness/page/web
 cat "$web"/{kernel,light,inputs,fields}.js src/panel.js > "$work/page.js"
@@ -21,17 +22,18 @@ bundle() { # bundle FILE OUTPUT [ARGUMENT...]
 bundle library.js hairis-three.js --external:three
 bundle example.js example.js
 bundle paths.js paths.js --loader:.wgsl=text
-node types.mjs "$target/page/hairis.wasm" > "$out/hairis-three.d.ts"
+node types.mjs "$out/hairis.wasm" > "$out/hairis-three.d.ts"
 for name in index paths; do
   # One style for all pages.
   sed -e "/<!-- style -->/{r /dev/stdin" -e 'd}' "web/$name.html" < <(sed -n '/<style>/,/<\/style>/p' "$web/index.html") | sed 's/^ *//' > "$out/$name.html"
 done
 shader=("${HAIRIS:-}" shader)
 [ -n "${HAIRIS:-}" ] || shader=(cargo run -q --release --locked --manifest-path "$root/Cargo.toml" -p hairis-shader --)
-"${shader[@]}" --target wgsl --model dual-scattering | sed '/^ *\/\//d' > "$target/page/dual-scattering.wgsl"
+"${shader[@]}" --target wgsl --model dual-scattering | sed '/^ *\/\//d' > "$out/dual-scattering.wgsl"
 for file in "$target"/page/*.wgsl; do
+  cp "$file" "$out"
   name=$(basename "$file" .wgsl)
-  [[ $name == *.paths || $name == dual-scattering ]] || "${shader[@]}" --target wgsl --model "$name" --call eval_sample_hit | sed '/^ *\/\//d' > "$target/page/$name.paths.wgsl"
+  "${shader[@]}" --target wgsl --model "$name" --call eval_sample_hit | sed '/^ *\/\//d' > "$out/$name.paths.wgsl"
 done
 render=("${RENDER:-}")
 [ -n "${RENDER:-}" ] || render=(cargo run -q --release --locked --manifest-path "$root/Cargo.toml" -p hairis-render --)

@@ -29,10 +29,7 @@ const page = (globalThis.hairis = {
 
 async function start() {
   if (!navigator.gpu) throw new Error('This browser has no WebGPU');
-  const [library, file] = await Promise.all([
-    Hairis.load('../'),
-    fetch('groom.hair').then(answer => answer.arrayBuffer()),
-  ]);
+  const [library, file] = await Promise.all([Hairis.load(), fetch('groom.hair').then(answer => answer.arrayBuffer())]);
   // `?every=20&model=gaussian`: as much hair as a driver in software draws, and the model at first. A strand stands for several.
   const query = new URLSearchParams(location.search),
     step = Number(query.get('every')) || 1,

@@ -15,10 +15,7 @@ const state = { around: 0.55, up: 0.12, distance: 3.4, exposure: 1.5, light: 'sk
 const page = (globalThis.hairis = { Models, Strands, Tracer, readLight, scattering, state, tracer: null, steps: 0 });
 
 async function start() {
-  const [models, file] = await Promise.all([
-    Models.load('../'),
-    fetch('groom.hair').then(answer => answer.arrayBuffer()),
-  ]);
+  const [models, file] = await Promise.all([Models.load(), fetch('groom.hair').then(answer => answer.arrayBuffer())]);
   // `?every=20&model=gaussian&side=96`: as much hair as a driver in software traces, the model at first, and pixels along each side.
   const query = new URLSearchParams(location.search),
     step = Number(query.get('every')) || 1,

@@ -448,7 +448,9 @@ async function readme(browser, { address, check, folder }) {
       contentType: 'text/javascript',
     }),
   );
-  await page.route(`${at}hairis/*`, route => route.fulfill({ path: join(folder, basename(route.request().url())) }));
+  await page.route(`${at}hairis/*`, route =>
+    route.fulfill({ path: join(folder, 'three', basename(route.request().url())) }),
+  );
   await page.route(`${at}readme.html`, route =>
     route.fulfill({
       contentType: 'text/html',
