@@ -4,7 +4,9 @@ use crate::memory::COLUMN;
 use crate::slot::Slot;
 use glam::Vec3;
 use hairis::simd::{LaneStruct, Path, f32x8};
-use hairis::{Hit, Vec3x8};
+use hairis::{Bsdf, Hit, Lobe, Vec3x8};
+#[cfg(feature = "dual")]
+use hairis::{LobeMask, dual_scattering::DualScattering};
 use hairis_variants::{ModelId, Registered, Visitor};
 
 /// Columns that a function reads its arguments from and writes its results to.
@@ -17,6 +19,8 @@ pub(crate) struct Calls {
     pub(crate) hits: fn(&Slot, &mut Columns, usize),
     pub(crate) albedos: fn(&Slot, &mut Columns, usize),
     pub(crate) constants: fn(&Slot, &mut [f32]) -> usize,
+    #[cfg(feature = "dual")]
+    pub(crate) dual: fn(&Slot, &mut [f32]) -> usize,
 }
 
 impl Calls {
@@ -31,6 +35,8 @@ impl Calls {
                     hits: hits::<M>,
                     albedos: albedos::<M>,
                     constants: constants::<M>,
+                    #[cfg(feature = "dual")]
+                    dual: dual::<M>,
                 }
             }
         }
@@ -73,16 +79,27 @@ fn eval<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize) {
 fn sample<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize) {
     let bsdf = slot.bsdf::<M>();
     for place in 0..count {
-        let sample = bsdf.sample([0, 1, 2].map(|axis| columns[axis][place]));
-        let results = sample.map_or([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0], |sample| {
-            let ([u, v, w], [r, g, b]) = (sample.wi.to_array(), sample.weight);
-            let lobe = sample.lobe.index();
-            [u, v, w, r, g, b, sample.pdf, lobe as f32]
-        });
+        let results = draw(&bsdf, [0, 1, 2].map(|axis| columns[axis][place]));
         for (column, number) in columns[3..].iter_mut().zip(results) {
             column[place] = number;
         }
     }
+}
+
+/// Returns direction, weight, density and slot of the lobe of a sample. Not inlined, like [`albedo`], because the module is to be small.
+#[inline(never)]
+fn draw<M: Registered>(bsdf: &Bsdf<M>, xi: [f32; 3]) -> [f32; 8] {
+    let none = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0];
+    bsdf.sample(xi).map_or(none, |sample| {
+        let ([u, v, w], [r, g, b]) = (sample.wi.to_array(), sample.weight);
+        let lobe = sample.lobe.index();
+        [u, v, w, r, g, b, sample.pdf, lobe as f32]
+    })
+}
+
+#[inline(never)]
+fn albedo<M: Registered>(bsdf: &Bsdf<M>) -> [[f32; 3]; Lobe::COUNT] {
+    bsdf.albedo().0
 }
 
 fn hits<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize) {
@@ -109,8 +126,8 @@ fn albedos<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize) {
         let sin = columns[0][place].clamp(-1.0, 1.0);
         let cos = libm::sqrtf((1.0 - sin) * (1.0 + sin));
         let bsdf = material.prepare(Hit::new(Vec3::new(sin, cos, 0.0), slot.hit.h));
-        let albedo = bsdf.albedo();
-        for (column, number) in columns[1..].iter_mut().zip(albedo.0.as_flattened()) {
+        let albedo = albedo(&bsdf);
+        for (column, number) in columns[1..].iter_mut().zip(albedo.as_flattened()) {
             column[place] = *number;
         }
     }
@@ -130,4 +147,36 @@ fn constants<M: Registered>(slot: &Slot, column: &mut [f32]) -> usize {
     let constants = M::MODEL.material(&slot.params::<M>());
     constants.visit(&Path::Root, &mut see);
     count
+}
+
+#[cfg(feature = "dual")]
+fn dual<M: Registered>(slot: &Slot, column: &mut [f32]) -> usize {
+    if const { !is_first::<M>() } {
+        return 0;
+    }
+    let material = slot.material::<M>();
+    let dual = DualScattering::measured(M::LOBES.len(), &mut |hit, lobe, xi, out| {
+        let whole = material.prepare(hit);
+        // No viewer gets back more than arrives, as with `Conserving`.
+        let lobes = albedo(&whole);
+        let [r, g, b] = [0, 1, 2].map(|c| {
+            let albedo: f32 = lobes.iter().map(|lobe| lobe[c]).sum();
+            1.0 / albedo.max(1.0)
+        });
+        let bsdf = whole.with_lobes(LobeMask::of(&[lobe]));
+        let (Some(mut wi), Some(mut weight)) = (out.wi, out.weight) else {
+            return;
+        };
+        for place in 0..xi[0].len() {
+            let [u, v, w, x, y, z, ..] = draw(&bsdf, xi.map(|column| column[place]));
+            let results = [u, v, w, r * x, g * y, b * z];
+            let columns = wi.iter_mut().chain(&mut weight);
+            columns
+                .zip(results)
+                .for_each(|(column, number)| column[place] = number);
+        }
+    });
+    let numbers = dual.coefficients.as_flattened().as_flattened();
+    column[..numbers.len()].copy_from_slice(numbers);
+    numbers.len()
 }

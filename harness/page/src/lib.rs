@@ -159,3 +159,13 @@ pub extern "C" fn constants(slot: usize) -> usize {
     let slot = &slots[slot & 1];
     (Calls::of(slot.first()).constants)(slot, &mut work[0])
 }
+
+/// Measures dual scattering of a slot's material, scaled so that no viewer gets back more light than arrives, and writes its averages to the
+/// first column of `work`, in the order in which the generated shader takes them. Returns their number.
+#[cfg(feature = "dual")]
+#[unsafe(no_mangle)]
+pub extern "C" fn dual_scattering(slot: usize) -> usize {
+    let Memory { slots, work, .. } = memory();
+    let slot = &slots[slot & 1];
+    (Calls::of(slot.first()).dual)(slot, &mut work[0])
+}

@@ -1,10 +1,10 @@
 // Maps of light as files, for tests.
 import { deflateSync } from 'node:zlib';
 
-/// An OpenEXR map of scanlines, red, green and blue in half precision, in blocks that ZIP compresses or none does.
-export function exr(isZip) {
-  const [width, height] = [32, 16],
-    attribute = (name, type, body) => Buffer.concat([Buffer.from(`${name}\0${type}\0`), int(body.length), body]);
+/// An OpenEXR map of scanlines, red, green and blue in half precision, in blocks that ZIP compresses or none does. `bits` returns a number of a
+/// block: by default some are 1.0, which is 0x3c00, and the others 0.5, which is 0x3800. In a row, all blue numbers come first and red ones last.
+export function exr(isZip, bits = i => (i % 5 ? 0x3800 : 0x3c00), [width, height] = [32, 16]) {
+  const attribute = (name, type, body) => Buffer.concat([Buffer.from(`${name}\0${type}\0`), int(body.length), body]);
   const int = (...numbers) => Buffer.from(Int32Array.from(numbers).buffer);
   const channels = Buffer.concat([
     ...['B', 'G', 'R'].map(name => Buffer.concat([Buffer.from(`${name}\0`), int(1, 0, 1, 1)])),
@@ -22,8 +22,7 @@ export function exr(isZip) {
   const rows = isZip ? 16 : 1,
     blocks = [];
   for (let y = 0; y < height; y += rows) {
-    // 1.0 is 0x3c00, and 0.5 is 0x3800.
-    const raw = Buffer.from(Uint16Array.from({ length: 3 * width * rows }, (_, i) => (i % 5 ? 0x3800 : 0x3c00)).buffer);
+    const raw = Buffer.from(Uint16Array.from({ length: 3 * width * rows }, (_, i) => bits(i, y)).buffer);
     let body = raw;
     if (isZip) {
       const halves = Buffer.from([...raw.filter((_, i) => !(i & 1)), ...raw.filter((_, i) => i & 1)]);
@@ -31,7 +30,13 @@ export function exr(isZip) {
     }
     blocks.push(Buffer.concat([int(y, body.length), body]));
   }
-  return Buffer.concat([head, Buffer.alloc(8 * blocks.length), ...blocks]);
+  // Where each block begins.
+  let at = head.length + 8 * blocks.length;
+  const places = blocks.map(block => {
+    at += block.length;
+    return BigInt(at - block.length);
+  });
+  return Buffer.concat([head, Buffer.from(BigInt64Array.from(places).buffer), ...blocks]);
 }
 
 /// A map of Radiance whose rows are not packed.

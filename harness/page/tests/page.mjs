@@ -1,15 +1,16 @@
-// Tests of the page in headless Chromium: page.mjs FOLDER HAIRIS CHROMIUM. Prints its figures, and fails with what is wrong.
+// Tests of the page in headless Chromium: page.mjs FOLDER HAIRIS CHROMIUM RENDER [TESTS]. Prints its figures, and fails with what is wrong.
 import { chromium } from 'playwright-core';
 import { execFileSync } from 'node:child_process';
-import { createServer } from 'node:http';
 import { readFileSync, readdirSync, statSync } from 'node:fs';
 import { mkdtemp } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
-import { basename, extname, join } from 'node:path';
+import { basename, join } from 'node:path';
 import { links } from './links.mjs';
 import { exr, radiance } from './maps.mjs';
+import { serve } from './serve.mjs';
+import { three } from './three.mjs';
 
-const [folder, hairis, executablePath] = process.argv.slice(2);
+const [folder, hairis, executablePath, render, tests] = process.argv.slice(2);
 // Times are bounds for an idle machine, and are printed beside what was measured. A check fails at four times as much: machines of CI
 // may be busy, or run at half their speed.
 const MOST_BYTES = 280_000,
@@ -26,20 +27,8 @@ const isClose = (a, b, relative, absolute = 0) =>
   Math.abs(a - b) <= relative * Math.max(Math.abs(a), Math.abs(b)) + absolute;
 const median = numbers => numbers.sort((a, b) => a - b)[numbers.length >> 1];
 
-const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.wgsl': 'text/plain' };
-const server = createServer(({ url }, answer) => {
-  const path = join(folder, url.split(/[?#]/)[0].replace(/\/$/, '/index.html'));
-  try {
-    const body = readFileSync(path);
-    answer.writeHead(200, { 'content-type': TYPES[extname(path)] ?? 'application/octet-stream' });
-    answer.end(body);
-  } catch {
-    answer.writeHead(404);
-    answer.end();
-  }
-});
-await new Promise(ready => server.listen(0, '127.0.0.1', ready));
-const address = `http://127.0.0.1:${server.address().port}/`;
+const server = await serve(folder),
+  { address } = server;
 const browser = await chromium.launch({
   executablePath,
   args: ['--no-sandbox', '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan'],
@@ -91,7 +80,7 @@ const evaluate = requests =>
 
 async function sizes() {
   const bytes = readdirSync(folder)
-    .filter(name => !name.endsWith('.wgsl'))
+    .filter(name => !name.endsWith('.wgsl') && statSync(join(folder, name)).isFile())
     .map(name => statSync(join(folder, name)).size);
   const total = bytes.reduce((a, b) => a + b);
   check('the page is small', total <= MOST_BYTES, `${total} bytes`);
@@ -485,10 +474,10 @@ async function example() {
   await page.close();
 }
 
-const all = { sizes, times, sliders, values, comparison, albedos, states, links, views, tuft, example };
-for (const name of process.argv[5]?.split(',') ?? Object.keys(all)) {
+const all = { sizes, times, sliders, values, comparison, albedos, states, links, views, tuft, example, three };
+for (const name of tests?.split(',') ?? Object.keys(all)) {
   try {
-    await all[name]({ open, check });
+    await all[name]({ open, check, chromium, executablePath, address, evaluate, render, folder });
   } catch (error) {
     check(name, false, error.stack);
   }

@@ -3,6 +3,10 @@
 const $ = id => document.getElementById(id);
 let unique = 0;
 
+const minus = text => text.replace('-', '−');
+const toSrgb = x => (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
+const toLinear = x => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+
 /// An element with attributes and children.
 function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);

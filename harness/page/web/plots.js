@@ -46,9 +46,6 @@ const position = (value, peak, scale) =>
 /// Place of a difference on the scale from -1 to 1.
 const signedPosition = (value, peak) => Math.sign(value) * Math.sqrt(Math.abs(value) / peak);
 
-const toSrgb = x => (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
-const toLinear = x => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
-
 class MapCanvas {
   constructor(canvas) {
     this.context = canvas.getContext('2d', { alpha: false });

@@ -90,12 +90,6 @@ function read(like, given, path = '') {
   );
 }
 
-function newMaterial(model) {
-  const [name] = Object.keys(model.presets);
-  return { model: model.name, word: model.entries[0].word, values: structuredClone(model.presets[name]), artist: null };
-}
-
-const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const haveSameFields = () => {
   const [a, b] = state.materials.map(material => kernel.model(material.model));
   return isSame(a.fields, b.fields);

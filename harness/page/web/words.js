@@ -2,7 +2,6 @@
 
 const title = name => name.replace(/(^|-)\w/g, letter => letter.toUpperCase());
 const titleOf = slot => title(state.materials[slot].model);
-const minus = text => text.replace('-', '−');
 const percent = (x, digits = 1) => minus(`${(100 * x).toFixed(digits)}%`);
 
 /// A figure with its error: digits that the error leaves.
