@@ -68,13 +68,11 @@ fn compare(
     let over = |part: &[[f64; 3]]| [0, 1, 2].map(|c| shown(part, c) / shown(&paths.pixels, c));
     let blocks = |luminances: Vec<f64>| {
         let mut sums = std::collections::BTreeMap::new();
-        for (k, (luminance, _)) in luminances
-            .iter()
-            .zip(&shows)
-            .enumerate()
-            .filter(|(_, (_, shows))| **shows)
-        {
-            let (x, y) = (k as u32 % side / 4, k as u32 / side / 4);
+        for (k, (luminance, shows)) in (0..).zip(luminances.iter().zip(&shows)) {
+            if !shows {
+                continue;
+            }
+            let (x, y): (u32, u32) = (k % side / 4, k / side / 4);
             *sums.entry((x, y)).or_insert(0.0) += luminance;
         }
         sums

@@ -14,7 +14,7 @@ use hairis_render::lights::Sky;
 use hairis_render::scene::Scene;
 use hairis_render::scenes::Name;
 use hairis_render::transport::{self, Integrator, Mis, Settings, record};
-use hairis_variants::{Kind, ModelId, Values};
+use hairis_variants::{Field, Kind, ModelId, Values};
 use std::fs;
 
 /// Settings of the paths that fits follow.
@@ -113,8 +113,9 @@ fn looks() -> Vec<Choice> {
     for id in ModelId::defaults_of_names() {
         let presets: Vec<_> = id.presets().take(3).collect();
         let mut preset = choice(id.name(), presets.last().expect("a preset").0);
-        // Tints of 1 are the end of their range, where a difference has one side.
-        for field in id.fields().iter().filter(|field| field.is_extra()) {
+        // Tints and colours of 1 are the end of their range, where a difference has one side.
+        let ends = |field: &&Field| field.is_extra() || field.name == "diffuse_color";
+        for field in id.fields().iter().filter(ends) {
             let inside: Vec<f32> = (preset.values.numbers(field.name).iter())
                 .map(|x| 0.9 * x)
                 .collect();

@@ -2,9 +2,9 @@
 
 use crate::fields::double;
 use crate::hair::Material;
-use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
 use hairis_capi::dual::hairis_dual_init;
 use hairis_capi::layout::DualScattering;
+use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

@@ -27,7 +27,7 @@ fn random(dual: &DualScattering<f32>, name: &str, random: &mut Random) -> Case {
     let material = numbers(dual);
     let mut direction = || {
         let theta = random.range(-1.57, 1.57);
-        let phi = random.range(0.0, 6.28);
+        let phi = random.range(-3.0, 3.0);
         Vec3::new(
             theta.sin(),
             theta.cos() * phi.cos(),
