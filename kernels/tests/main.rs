@@ -16,6 +16,7 @@ mod hair;
 mod hits;
 mod math;
 mod params;
+mod random;
 #[cfg(not(hairis_one))]
 mod resample;
 mod rows;
