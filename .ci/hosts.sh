@@ -190,5 +190,5 @@ part figures
 printf 'libhairis.so %s bytes, libhairis.a %s, wheel %s\n' "$(stat -c %s "$prefix/lib/libhairis.so.1.0.0")" \
   "$(stat -c %s "$prefix/lib/libhairis.a")" "$(stat -c %s "$work"/wheels/*.whl)"
 [ "$(stat -c %s "$prefix/lib/libhairis.so.1.0.0")" -le 2750000 ] || { echo "FAIL the library has more than 2.75 MB"; exit 1; }
-[ "$(stat -c %s "$work"/wheels/*.whl)" -le 1960000 ] || { echo "FAIL the wheel has more than 1.96 MB"; exit 1; }
+[ "$(stat -c %s "$work"/wheels/*.whl)" -le 1990000 ] || { echo "FAIL the wheel has more than 1.99 MB"; exit 1; }
 echo "hosts passed in ${SECONDS}s"

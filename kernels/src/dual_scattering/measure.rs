@@ -3,6 +3,7 @@
 use super::{QUANTITIES, TERMS};
 use crate::columns::SampleColumns;
 use crate::model::{Hit, Lobe};
+use crate::simd::Lanes;
 use core::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, PI};
 use glam::Vec3;
 
@@ -42,9 +43,12 @@ impl Sums {
         } else {
             all
         };
+        // A compiler may divide before it knows whether there is light, and two numbers in the lanes of one vector.
+        let weight = of.weight.max(LEAST_ALBEDO);
+        let mean = f32::quotient(of.angle, weight);
+        let variance = (f32::quotient(of.square, weight) - mean * mean).max(0.0);
         if of.weight > LEAST_ALBEDO {
-            let mean = of.angle / of.weight;
-            [mean, (of.square / of.weight - mean * mean).max(0.0)]
+            [mean, variance]
         } else {
             [0.0, 0.0]
         }
@@ -59,7 +63,7 @@ pub(super) fn measure(theta: f32, lobes: usize, draw: &mut Draw<'_>) -> [[f32; 3
     let mut sides = [[Sums::default(); 3]; 2];
     let mut azimuth = [[0.0_f32; 3]; 2];
     let shares = (0..OFFSETS).map(|offset| around(offset).1).sum::<f32>();
-    let shares = 1.0 / (shares * POINTS as f32);
+    let shares = f32::quotient(1.0, shares * POINTS as f32);
     let each = |offset| {
         Lobe::ALL
             .into_iter()
@@ -74,7 +78,9 @@ pub(super) fn measure(theta: f32, lobes: usize, draw: &mut Draw<'_>) -> [[f32; 3
             for (point, xi) in column.iter_mut().enumerate() {
                 // Lattices of other offsets lie between the points of this one.
                 let between = (f32::from(offset) + 0.5) / f32::from(OFFSETS);
-                let place = ((point * step % POINTS) as f32 + between) / POINTS as f32;
+                // By a product: a quotient is computed in vectors, whose unused lanes divide by 0.
+                const BY: f32 = 1.0 / POINTS as f32;
+                let place = ((point * step % POINTS) as f32 + between) * BY;
                 // As a tent, whose ends meet: a lattice is exact for functions that do not jump there.
                 *xi = (1.0 - libm::fabsf(2.0 * place - 1.0)).min(1.0 - f32::EPSILON);
             }
@@ -89,6 +95,10 @@ pub(super) fn measure(theta: f32, lobes: usize, draw: &mut Draw<'_>) -> [[f32; 3
         let hit = Hit::new(wo, libm::sinf(around));
         draw(hit, lobe, xi.each_ref().map(|column| &column[..]), out);
         for point in 0..POINTS {
+            // Discarded samples have no weight, and may have no direction.
+            if weight.iter().all(|column| column[point] <= 0.0) {
+                continue;
+            }
             let [x, y, z] = wi.map(|column| column[point]);
             let across = libm::sqrtf(y * y + z * z);
             let angle = libm::atan2f(x, across) + theta;
@@ -97,13 +107,10 @@ pub(super) fn measure(theta: f32, lobes: usize, draw: &mut Draw<'_>) -> [[f32; 3
             let triple = cos * (4.0 * cos * cos - 3.0);
             for c in 0..3 {
                 let weight = weight[c][point] * share;
-                // Discarded samples have no weight, and may have no direction.
-                if weight > 0.0 {
-                    sides[0][c].add(weight * forward, angle);
-                    sides[1][c].add(weight * (1.0 - forward), angle);
-                    azimuth[0][c] += weight * cos;
-                    azimuth[1][c] += weight * triple;
-                }
+                sides[0][c].add(weight * forward, angle);
+                sides[1][c].add(weight * (1.0 - forward), angle);
+                azimuth[0][c] += weight * cos;
+                azimuth[1][c] += weight * triple;
             }
         }
     }

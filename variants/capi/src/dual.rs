@@ -1,8 +1,10 @@
 //! Dual scattering: averages of materials, and light that other fibres scattered.
 
-use crate::handles::{material, model_of};
-use crate::layout::{ARGUMENT, Crossed, DualScattering, OK, RawMaterial};
-use crate::models::visit;
+use crate::columns::hairis_sample_columns;
+use crate::handles::model_of;
+use crate::layout::{ARGUMENT, Crossed, DualScattering, OK, RawBsdf, RawMaterial, Samples};
+use crate::points::{hairis_prepare, hairis_restrict};
+use core::mem::MaybeUninit;
 use core::ptr;
 use hairis::dual_scattering as dual;
 use hairis::simd::Vec3x;
@@ -20,9 +22,34 @@ pub unsafe extern "C" fn hairis_dual_init(
     let Some(id) = (unsafe { model_of(from) }) else {
         return ARGUMENT;
     };
-    let measured = visit!(id, M, (from: *const RawMaterial) -> dual::DualScattering<f32>, {
-        // SAFETY: the tag is the model's.
-        dual::DualScattering::new(unsafe { material::<M>(from) })
+    // By the calls of the interface, which are compiled for every model already.
+    let measured = dual::DualScattering::measured(id.lobes().len(), &mut |hit, lobe, xi, out| {
+        let mut bsdf = MaybeUninit::<RawBsdf>::zeroed();
+        let columns = |vector: Option<[&mut [f32]; 3]>| {
+            vector.map_or([ptr::null_mut(); 3], |columns| {
+                columns.map(|column| column.as_mut_ptr())
+            })
+        };
+        let xi = xi.map(|column| (column.as_ptr(), column.len()));
+        let samples = Samples {
+            wi: columns(out.wi),
+            value: [ptr::null_mut(); 3],
+            pdf: ptr::null_mut(),
+            weight: columns(out.weight),
+            lobe: ptr::null_mut(),
+        };
+        let wo = hit.wo;
+        // SAFETY: the material is initialised, the BSDF is written before it is read, and columns have one length.
+        unsafe {
+            hairis_prepare(bsdf.as_mut_ptr(), from, wo.x, wo.y, wo.z, hit.h);
+            hairis_restrict(bsdf.as_mut_ptr(), 1 << lobe.index());
+            hairis_sample_columns(
+                bsdf.as_ptr(),
+                xi[0].1,
+                &xi.map(|(column, _)| column),
+                &samples,
+            );
+        }
     });
     // SAFETY: the caller's promise.
     unsafe { (*to).coefficients = measured.coefficients };
