@@ -3,9 +3,10 @@
 use crate::columns::hairis_sample_columns;
 use crate::handles::model_of;
 use crate::layout::{ARGUMENT, Crossed, DualScattering, OK, RawBsdf, RawMaterial, Samples};
-use crate::points::{hairis_prepare, hairis_restrict};
+use crate::points::{hairis_albedo, hairis_prepare, hairis_restrict};
 use core::mem::MaybeUninit;
 use core::ptr;
+use hairis::Lobe;
 use hairis::dual_scattering as dual;
 use hairis::simd::Vec3x;
 
@@ -22,7 +23,9 @@ pub unsafe extern "C" fn hairis_dual_init(
     let Some(id) = (unsafe { model_of(from) }) else {
         return ARGUMENT;
     };
-    // By the calls of the interface, which are compiled for every model already.
+    // By the calls of the interface, which are compiled for every model already. A lobe that scatters nothing is not sampled alone, because
+    // it has no share to divide by.
+    let mut is_dark = [None; Lobe::COUNT];
     let measured = dual::DualScattering::measured(id.lobes().len(), &mut |hit, lobe, xi, out| {
         let mut bsdf = MaybeUninit::<RawBsdf>::zeroed();
         let columns = |vector: Option<[&mut [f32]; 3]>| {
@@ -42,6 +45,14 @@ pub unsafe extern "C" fn hairis_dual_init(
         // SAFETY: the material is initialised, the BSDF is written before it is read, and columns have one length.
         unsafe {
             hairis_prepare(bsdf.as_mut_ptr(), from, wo.x, wo.y, wo.z, hit.h);
+            let is_dark = *is_dark[lobe.index()].get_or_insert_with(|| {
+                let mut albedo = [[0.0; 3]; Lobe::COUNT];
+                hairis_albedo(bsdf.as_ptr(), &raw mut albedo);
+                albedo[lobe.index()].into_iter().all(|share| share <= 0.0)
+            });
+            if is_dark {
+                return;
+            }
             hairis_restrict(bsdf.as_mut_ptr(), 1 << lobe.index());
             hairis_sample_columns(
                 bsdf.as_ptr(),
