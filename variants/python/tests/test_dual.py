@@ -6,7 +6,7 @@ import pytest
 import hairis
 import hairis.dual
 
-DEPTHS = np.float32([0.0, 0.5, 3.0])
+DEPTHS = np.array([0.0, 0.5, 3.0], np.float32)
 
 
 @pytest.mark.parametrize("model", ["gaussian", "cauchy", "kajiya-kay", "chiang"])
