@@ -3,8 +3,9 @@
 >>> dual = hairis.dual.material("chiang", "blond")
 >>> crossed = dual.depth(0.0, 2.5)
 >>> single = hairis.Material("chiang", "blond").eval((0, 0, 1), (0, 1, 0))
->>> dual.shade((0, 0, 1), (0, 1, 0), single, crossed).shape
-(3,)
+>>> red, green, blue = dual.shade((0, 0, 1), (0, 1, 0), single, crossed)
+>>> bool(red > blue > 0)
+True
 
 The functions take arrays of NumPy, Dr.Jit, JAX or PyTorch, which differentiates them. Vectors are arrays whose first index is the component.
 Directions are of unit length, in the fibre's frame; angles are radians. The chapter `dual_scattering` of the documentation of `hairis`
