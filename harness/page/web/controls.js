@@ -86,8 +86,6 @@ function build() {
     model = kernel.model(material.model);
   const card = $('material');
   card.className = `card ${isLinked() ? '' : slot ? 'slot-b' : 'slot-a'}`;
-  const presets = Object.keys(model.presets);
-  const current = presets.find(name => !material.artist && isSame(model.presets[name], material.values));
   fill(
     card,
     legend('Materials'),
@@ -158,12 +156,10 @@ function build() {
             state.tab = tab;
           },
         ),
-    choice(
-      'preset',
-      [...(current ? [] : [{ value: '', text: 'edited' }]), ...presets.map(value => ({ value }))],
-      current ?? '',
+    ...startRows(
+      model,
+      material,
       name => {
-        if (!name) return;
         material.values = structuredClone(model.presets[name]);
         if (material.artist) {
           kernel.setMaterial(slot, { ...material, artist: null });
@@ -173,27 +169,17 @@ function build() {
         changed();
         commit();
       },
+      wanted => {
+        if (wanted && !material.artist) {
+          kernel.setMaterial(slot, material);
+          material.artist = kernel.toArtist(slot);
+        }
+        if (!wanted && material.artist) {
+          material.values = fieldsOf(material, slot);
+          material.artist = null;
+        }
+      },
     ),
-    model.artist
-      ? buttons(
-          'Terms',
-          [
-            [false, 'Parameters'],
-            [true, 'Artist’s controls'],
-          ],
-          Boolean(material.artist),
-          wanted => {
-            if (wanted && !material.artist) {
-              kernel.setMaterial(slot, material);
-              material.artist = kernel.toArtist(slot);
-            }
-            if (!wanted && material.artist) {
-              material.values = fieldsOf(material, slot);
-              material.artist = null;
-            }
-          },
-        )
-      : null,
     ...materialRows(material),
   );
 }

@@ -16,6 +16,34 @@ function sliderRange({ range: [least, most], draw, log }) {
   return [Math.max(lo, least), Math.min(hi, most)];
 }
 
+/// Where a material starts from: the choice of its preset, "edited" where it is none, and, for models that artists have controls of, the terms
+/// in which it is given. `setPreset` takes a name, and `setTerms` whether the artist's controls are wanted.
+function startRows(model, material, setPreset, setTerms) {
+  const presets = Object.keys(model.presets),
+    current = presets.find(name => !material.artist && isSame(model.presets[name], material.values));
+  return [
+    choice(
+      'preset',
+      [...(current ? [] : [{ value: '', text: 'edited' }]), ...presets.map(value => ({ value }))],
+      current ?? '',
+      name => {
+        if (name) setPreset(name);
+      },
+    ),
+    model.artist
+      ? buttons(
+          'Terms',
+          [
+            [false, 'Parameters'],
+            [true, 'Artist’s controls'],
+          ],
+          Boolean(material.artist),
+          setTerms,
+        )
+      : null,
+  ];
+}
+
 /// The controls of one field.
 function fieldRows(field, material) {
   const { values } = material,

@@ -25,9 +25,7 @@ function materialPanel(loaded, material, shown, rows = () => []) {
       return shown(given(material), false);
     },
     build() {
-      const model = kernel.model(material.model),
-        presets = Object.keys(model.presets),
-        current = presets.find(name => !material.artist && isSame(model.presets[name], material.values));
+      const model = kernel.model(material.model);
       fill(
         $('material'),
         choice(
@@ -40,31 +38,20 @@ function materialPanel(loaded, material, shown, rows = () => []) {
             shown(given(material), true);
           },
         ),
-        choice(
-          'preset',
-          [...(current ? [] : [{ value: '', text: 'edited' }]), ...presets.map(value => ({ value }))],
-          current ?? '',
+        ...startRows(
+          model,
+          material,
           name => {
-            if (!name) return;
             Object.assign(material, { values: structuredClone(model.presets[name]), artist: null });
             build();
             changed();
           },
+          wanted => {
+            kernel.setMaterial(0, material);
+            if (wanted) material.artist = kernel.toArtist(0);
+            else Object.assign(material, { values: kernel.readValues(model), artist: null });
+          },
         ),
-        model.artist &&
-          buttons(
-            'Terms',
-            [
-              [false, 'Parameters'],
-              [true, 'Artist’s controls'],
-            ],
-            Boolean(material.artist),
-            wanted => {
-              kernel.setMaterial(0, material);
-              if (wanted) material.artist = kernel.toArtist(0);
-              else Object.assign(material, { values: kernel.readValues(model), artist: null });
-            },
-          ),
         ...materialRows(material),
         ...rows(),
       );

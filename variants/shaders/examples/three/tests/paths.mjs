@@ -1,6 +1,6 @@
 // Tests against hairis-render, on hair, maps and a camera that both have: the path tracer in the browser, and direct light of three.js.
 import { execFileSync } from 'node:child_process';
-import { readFileSync, writeFileSync } from 'node:fs';
+import { readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { mkdtemp } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -43,6 +43,31 @@ const map = exr(false, (i, row) => {
   return column < 16 === (channel === 0) ? 0x3400 : 0x2e66;
 });
 
+/// A picture of hairis-render, of hair and a map of light in files, as base64.
+function rendered(render, hair, map, flags) {
+  const out = map.replace('.exr', '-seen.exr');
+  const scene = ['env', '--curve', 'linear', '--backdrop', '0', '--import', hair, '--env', map];
+  execFileSync(render, ['render', ...scene, ...flags.split(' '), '--out', out], { stdio: 'ignore' });
+  const bytes = readFileSync(out).toString('base64');
+  // Otherwise the next picture would go on from this one.
+  for (const kind of ['exr', 'png', 'part']) rmSync(out.replace(/exr$/, kind), { force: true });
+  return bytes;
+}
+
+/// In the browser: makes the function `framed`, which returns strands of nodes with the camera of hairis-render for hair from a file.
+function addFramed() {
+  globalThis.framed = (nodes, count) => {
+    const strands = new globalThis.hairis.Strands(
+        Float32Array.from(nodes.flat()),
+        Uint32Array.from({ length: nodes.length / count }, (_, i) => count * (i + 1)),
+      ),
+      { low, high } = strands.box,
+      centre = low.map((x, axis) => (x + high[axis]) / 2),
+      scale = Math.hypot(...low.map((x, axis) => high[axis] - x)) / 40;
+    return { strands, centre, eye: [centre[0], centre[1] + 9 * scale, centre[2] + 52 * scale] };
+  };
+}
+
 /// The means of the pictures agree within their errors, for a model of the near field and one of the far field.
 export async function paths({ open, check, render }) {
   const folder = await mkdtemp(join(tmpdir(), 'hairis-')),
@@ -55,6 +80,7 @@ export async function paths({ open, check, render }) {
     null,
     { timeout: 60_000 },
   );
+  await page.evaluate(addFramed);
   check(
     'the path tracer starts',
     (await page.locator('#refusal').textContent()) === '',
@@ -64,46 +90,17 @@ export async function paths({ open, check, render }) {
     ['chiang', 'default'],
     ['gaussian', 'brown'],
   ]) {
-    const out = join(folder, `${model}.exr`);
-    execFileSync(
+    const picture = rendered(
       render,
-      [
-        'render',
-        'env',
-        '--import',
-        join(folder, 'tuft.hair'),
-        '--curve',
-        'linear',
-        '--env',
-        join(folder, 'map.exr'),
-        '--backdrop',
-        '0',
-        '--integrator',
-        'path',
-        '--model',
-        model,
-        '--hair',
-        preset,
-        '--spp',
-        `${16 * SPP}`,
-        '--size',
-        `${SIDE}x${SIDE}`,
-        '--out',
-        out,
-      ],
-      { stdio: 'ignore' },
+      join(folder, 'tuft.hair'),
+      join(folder, 'map.exr'),
+      `--integrator path --model ${model} --hair ${preset} --spp ${16 * SPP} --size ${SIDE}x${SIDE}`,
     );
     const { truth, sums } = await page.evaluate(
       async ({ nodes, NODES, SIDE, model, preset, SPP, map, picture }) => {
-        const { Strands, Tracer, models, readLight } = hairis,
+        const { Tracer, models, readLight } = hairis,
           file = (name, bytes) => new File([Uint8Array.from(atob(bytes), letter => letter.charCodeAt(0))], name),
-          strands = new Strands(
-            Float32Array.from(nodes.flat()),
-            Uint32Array.from({ length: nodes.length / NODES }, (_, i) => NODES * (i + 1)),
-          ),
-          { low, high } = strands.box,
-          centre = low.map((x, axis) => (x + high[axis]) / 2),
-          scale = Math.hypot(...low.map((x, axis) => high[axis] - x)) / 40;
+          { strands, centre, eye } = framed(nodes, NODES);
         const tracer = await Tracer.start(strands),
           { kernel } = models;
         const refusal = kernel.setMaterial(0, { model, values: models.presets(model)[preset] });
@@ -113,15 +110,7 @@ export async function paths({ open, check, render }) {
           kernel.work[0].slice(0, kernel.calls.constants(0)),
         );
         tracer.setMap(await readLight(file('map.exr', map)));
-        // The camera of hairis-render for hair from a file.
-        tracer.setView(
-          {
-            eye: [centre[0], centre[1] + 9 * scale, centre[2] + 52 * scale],
-            at: centre,
-            slope: Math.tan((21 * Math.PI) / 180),
-          },
-          SIDE,
-        );
+        tracer.setView({ eye, at: centre, slope: Math.tan((21 * Math.PI) / 180) }, SIDE);
         const sums = [];
         for (let batch = 0; batch < 8; batch++) {
           tracer.restart();
@@ -138,7 +127,7 @@ export async function paths({ open, check, render }) {
         preset,
         SPP,
         map: map.toString('base64'),
-        picture: readFileSync(out).toString('base64'),
+        picture,
       },
     );
     // Means of the picture and of its quarters, by channel.
@@ -189,6 +178,7 @@ export async function direct({ open, check, render }) {
     page = await open('three/?every=500&model=kajiya-kay', { width: 480, height: 480 }),
     [hair, map] = ['tuft.hair', 'sun.exr'].map(name => join(folder, name));
   await page.waitForFunction(() => globalThis.hairis?.frames > 0, null, { timeout: 60_000 });
+  await page.evaluate(addFramed);
   writeFileSync(hair, hairFile(nodes));
   // Light from behind the hair, and from before it.
   for (const [model, column] of [
@@ -196,23 +186,18 @@ export async function direct({ open, check, render }) {
     ['chiang', 20],
   ]) {
     writeFileSync(map, sun(column));
-    const pictures = ['direct', 'dual'].map(integrator => {
-      const out = join(folder, `${model}-${integrator}.exr`),
-        scene = `env --curve linear --backdrop 0 --hair brown --spp 256 --size ${SIDE}x${SIDE}`.split(' '),
-        flags = ['--import', hair, '--env', map, '--model', model, '--integrator', integrator, '--out', out];
-      execFileSync(render, ['render', ...scene, ...flags], { stdio: 'ignore' });
-      return readFileSync(out).toString('base64');
-    });
+    const pictures = ['direct', 'dual'].map(integrator =>
+      rendered(
+        render,
+        hair,
+        map,
+        `--integrator ${integrator} --model ${model} --hair brown --spp 256 --size ${SIDE}x${SIDE}`,
+      ),
+    );
     const { truth, seen } = await page.evaluate(
       async ({ nodes, NODES, SIDE, model, pictures, sun: [column, row] }) => {
-        const { THREE, Crossings, Strands, library, renderer, ribbons, readLight } = hairis,
-          strands = new Strands(
-            Float32Array.from(nodes.flat()),
-            Uint32Array.from({ length: nodes.length / NODES }, (_, i) => NODES * (i + 1)),
-          ),
-          { low, high } = strands.box,
-          centre = low.map((x, axis) => (x + high[axis]) / 2),
-          scale = Math.hypot(...low.map((x, axis) => high[axis] - x)) / 40;
+        const { THREE, Crossings, library, renderer, ribbons, readLight } = hairis,
+          { strands, centre, eye } = framed(nodes, NODES);
         const edge = at => Math.cos((Math.PI * at) / 128),
           y = (edge(row) + edge(row + 1)) / 2,
           turn = 2 * Math.PI * ((column + 0.5) / 256 - 0.5),
@@ -223,7 +208,7 @@ export async function direct({ open, check, render }) {
         light.position
           .set(Math.sqrt(1 - y * y) * Math.sin(turn), y, -Math.sqrt(1 - y * y) * Math.cos(turn))
           .multiplyScalar(100);
-        camera.position.set(centre[0], centre[1] + 9 * scale, centre[2] + 52 * scale);
+        camera.position.set(...eye);
         camera.lookAt(...centre);
         const meanOf = (data, width, count) =>
             [0, 1, 2].map(c => data.reduce((sum, x, at) => (at % width === c ? sum + x : sum), 0) / count),
