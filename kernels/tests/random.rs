@@ -24,8 +24,8 @@ fn uniform_numbers_are_24_bits_below_1() {
 #[test]
 fn eight_samples_are_drawn_lane_by_lane() {
     let [mut one, mut eight] = [7; 2].map(ChaCha8Rng::seed_from_u64);
-    let lanes = xi8(&mut eight).map(|axis| axis.to_array());
-    for lane in 0..8 {
-        assert_eq!(xi(&mut one), [0, 1, 2].map(|axis| lanes[axis][lane]));
+    let [x, y, z] = xi8(&mut eight).map(|axis| axis.to_array());
+    for ((x, y), z) in x.into_iter().zip(y).zip(z) {
+        assert_eq!(xi(&mut one), [x, y, z]);
     }
 }
