@@ -21,13 +21,13 @@ sed 's/^ *//' web/index.html > "$out/index.html"
 cat web/{kernel,state,figures,plots,inputs,fields,controls,light,gpu,tuft,words,main}.js > "$target/page-build/page.js"
 if command -v npx > /dev/null; then npx --yes esbuild@0.28.2 --log-level=warning --minify --charset=utf8 --format=iife "$target/page-build/page.js" --outfile="$out/page.js"
 else cp "$target/page-build/page.js" "$out"; fi
-shader=("${HAIRIS:-}" shader)
-[ -n "${HAIRIS:-}" ] || shader=(cargo run -q --release --locked --manifest-path "$root/Cargo.toml" -p hairis-shader --)
+# From the root, because cargo's settings of this folder are those of WebAssembly.
+shader() { if [ -n "${HAIRIS:-}" ]; then "$HAIRIS" shader "$@"; else (cd "$root" && cargo run -q --release --locked -p hairis-shader -- "$@"); fi; }
 # The names of the models, as the refusal of a name that is none lists them.
-names=$("${shader[@]}" --target wgsl --model '' 2>&1 | sed -n 's/.*must be one of \(.*\), got.*/\1/p' | tr -d ,) || true
+names=$(shader --target wgsl --model '' 2>&1 | sed -n 's/.*must be one of \(.*\), got.*/\1/p' | tr -d ,) || true
 [ -n "$names" ] || { echo "hairis shader must list its models, got nothing"; exit 1; }
 for name in $names; do
-  "${shader[@]}" --target wgsl --model "$name" --call eval_hit --only value | sed '/^ *\/\//d' > "$out/$name.wgsl"
+  shader --target wgsl --model "$name" --call eval_hit --only value | sed '/^ *\/\//d' > "$out/$name.wgsl"
 done
 echo "$out has $(cat "$out"/* | wc -c) bytes: python3 -m http.server --directory $out"
 # The example for three.js lies beside the page, which has its links where npm provides three.js.

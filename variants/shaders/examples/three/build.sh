@@ -27,15 +27,14 @@ for name in index paths; do
   # One style for all pages.
   sed -e "/<!-- style -->/{r /dev/stdin" -e 'd}' "web/$name.html" < <(sed -n '/<style>/,/<\/style>/p' "$web/index.html") | sed 's/^ *//' > "$out/$name.html"
 done
-shader=("${HAIRIS:-}" shader)
-[ -n "${HAIRIS:-}" ] || shader=(cargo run -q --release --locked --manifest-path "$root/Cargo.toml" -p hairis-shader --)
-"${shader[@]}" --target wgsl --model dual-scattering | sed '/^ *\/\//d' > "$out/dual-scattering.wgsl"
+program() { (cd "$root" && cargo run -q --release --locked -p "$1" -- "${@:2}"); } # program PACKAGE [ARGUMENT...]
+shader() { if [ -n "${HAIRIS:-}" ]; then "$HAIRIS" shader "$@"; else program hairis-shader "$@"; fi; }
+shader --target wgsl --model dual-scattering | sed '/^ *\/\//d' > "$out/dual-scattering.wgsl"
 for file in "$target"/page/*.wgsl; do
   cp "$file" "$out"
   name=$(basename "$file" .wgsl)
-  "${shader[@]}" --target wgsl --model "$name" --call eval_sample_hit | sed '/^ *\/\//d' > "$out/$name.paths.wgsl"
+  shader --target wgsl --model "$name" --call eval_sample_hit | sed '/^ *\/\//d' > "$out/$name.paths.wgsl"
 done
-render=("${RENDER:-}")
-[ -n "${RENDER:-}" ] || render=(cargo run -q --release --locked --manifest-path "$root/Cargo.toml" -p hairis-render --)
-"${render[@]}" render straight --strands 5000 --size 8x8 --spp 1 --out "$work/groom.exr" --export "$out/groom.hair" > /dev/null
+render() { if [ -n "${RENDER:-}" ]; then "$RENDER" render "$@"; else program hairis-render render "$@"; fi; }
+render straight --strands 5000 --size 8x8 --spp 1 --out "$work/groom.exr" --export "$out/groom.hair" > /dev/null
 for file in hairis-three.js example.js paths.js; do echo "$file has $(wc -c < "$out/$file") bytes, $(gzip -c "$out/$file" | wc -c) compressed"; done
