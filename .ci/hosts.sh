@@ -179,10 +179,11 @@ HAIRIS_HITS=100 "$python" .ci/frameworks.py "$programs/hairis" numpy drjit > "$w
 
 part Mitsuba
 (cd "$capi/examples/mitsuba" && "$python" chi2.py 1000000)
-# The referee judges the hair of Mitsuba itself: its values have a cosine, and are right.
+# The referee judges the hair of Mitsuba itself: its values have a cosine, and are right, and so are its samples.
 "$programs/hairis-referee" vectors --model chiang | "$python" harness/referee/examples/mitsuba_hair.py > "$work/mitsuba.json"
 { "$programs/hairis-referee" check --tolerance 0.01 "$work/mitsuba.json" || true; } | tee "$work/verdict"
 grep -q '^value .* factor cos theta_i, else right' "$work/verdict"
+grep -q '^samples .* right' "$work/verdict"
 "$capi/examples/mitsuba/build.sh" "$python" "$prefix" "$work/plugins"
 (cd "$work" && "$python" "$capi/examples/mitsuba/pixels.py" "$work/plugins")
 

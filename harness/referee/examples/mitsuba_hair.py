@@ -19,6 +19,8 @@ def local(directions, azimuth):
     return mi.Vector3f(across * np.sin(azimuth), axis, across * np.cos(azimuth))
 
 
+SAMPLES = 1000
+random = np.random.default_rng(1)
 cases = [json.loads(line) for line in sys.stdin]
 for _, scene in itertools.groupby(cases, key=lambda case: case["scene"]):
     scene = list(scene)
@@ -33,5 +35,16 @@ for _, scene in itertools.groupby(cases, key=lambda case: case["scene"]):
     # Mitsuba calls the viewer's direction wi, and the light's wo.
     hit.wi = local(wo, viewer)
     value, pdf = hair.eval_pdf(mi.BSDFContext(), hit, local(wi, light))
-    for case, value, pdf in zip(scene, np.array(value).T.tolist(), np.array(pdf).tolist()):
-        print(json.dumps({**case, "value": value, "pdf": pdf}))
+    answers = [{**case, "value": value, "pdf": pdf} for case, value, pdf in zip(scene, np.array(value).T.tolist(), np.array(pdf).tolist())]
+    # The first answer has samples of the shading point.
+    hit = dr.zeros(mi.SurfaceInteraction3f, SAMPLES)
+    hit.wi = local(np.repeat(wo[:1], SAMPLES, axis=0), viewer[0])
+    numbers = [mi.Float(row) for row in random.random((3, SAMPLES))]
+    drawn = hair.sample(mi.BSDFContext(), hit, numbers[0], mi.Point2f(*numbers[1:]))[0]
+    pdf, (across, axis, normal) = np.array(drawn.pdf), np.array(drawn.wo)
+    azimuth = np.arctan2(across, normal) - viewer[0] + np.arctan2(wo[0, 2], wo[0, 1])
+    radius = np.hypot(across, normal)
+    ours = np.stack([axis, radius * np.cos(azimuth), radius * np.sin(azimuth)], axis=1)
+    answers[0]["samples"] = [direction if density > 0 else None for direction, density in zip(ours.tolist(), pdf)]
+    for answer in answers:
+        print(json.dumps(answer))

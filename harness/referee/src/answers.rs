@@ -1,5 +1,6 @@
 //! Answers of another program: cases with numbers of its own.
 
+use crate::samples;
 use hairis_materials::MaterialSpec;
 use hairis_materials::json::{Json, direction, number, numbers, offset, refusal};
 use hairis_reference::{Reference, exact_reference};
@@ -7,7 +8,7 @@ use hairis_variants::ModelId;
 use std::collections::BTreeMap;
 
 /// Fields of a case besides those of a request of `hairis eval`. The first two are for readers alone.
-const MORE: [&str; 7] = [
+const MORE: [&str; 9] = [
     "case",
     "expected",
     "scene",
@@ -15,6 +16,8 @@ const MORE: [&str; 7] = [
     "value",
     "pdf",
     "lobes",
+    "albedo",
+    "samples",
 ];
 
 /// Answer to a case, with what the formulas answer.
@@ -36,6 +39,10 @@ pub struct Answer {
     pub want: Numbers,
     /// Density of sampling the direction from each lobe alone, per steradian, by the formulas; 0 in slots without a lobe.
     pub lobe_pdfs: [f64; 4],
+    /// Unit directions that the program has drawn at the shading point, or `None` for each that it has discarded.
+    pub samples: Vec<Option<[f64; 3]>>,
+    /// Directions that the sampler of the formulas draws there, more than those of the program.
+    pub formulas: Vec<Option<[f64; 3]>>,
 }
 
 /// Numbers at one direction.
@@ -47,10 +54,12 @@ pub struct Numbers {
     pub pdf: Option<f64>,
     /// Contribution of each lobe to S, linear RGB, per steradian, by the place of its name in [`Answers::lobes`].
     pub lobes: Vec<Option<[f64; 3]>>,
+    /// Integral of each lobe's contribution times the cosine over all directions, linear RGB, in the same order.
+    pub albedo: Vec<Option<[f64; 3]>>,
 }
 
 impl Numbers {
-    /// Returns the numbers of the formulas at a direction.
+    /// Returns the numbers of the formulas at a direction, without the albedos.
     #[must_use]
     pub fn of(model: ModelId, point: &dyn Reference<f64>, wi: [f64; 3]) -> Self {
         let (value, pdf) = point.eval_pdf(wi);
@@ -62,7 +71,14 @@ impl Numbers {
             value: Some(value),
             pdf: Some(pdf),
             lobes: lobes.map(Some)[..model.lobes().len()].to_vec(),
+            albedo: Vec::new(),
         }
+    }
+
+    /// Returns the albedos of the formulas.
+    #[must_use]
+    pub fn albedos(model: ModelId, point: &dyn Reference<f64>) -> Vec<Option<[f64; 3]>> {
+        point.albedo().0.map(Some)[..model.lobes().len()].to_vec()
     }
 }
 
@@ -130,15 +146,30 @@ fn parse(line: usize, text: &str) -> Result<(ModelId, Answer), String> {
             format!("must be above 0, got {density}"),
         ));
     }
-    let names = spec.model.lobes();
-    let lobes = match fields.get("lobes") {
-        Some(json) => json.clone().fields("lobes", names)?,
-        None => BTreeMap::new(),
+    let by_lobe = |field: &str| {
+        let names = spec.model.lobes();
+        let lobes = match fields.get(field) {
+            Some(json) => json.clone().fields(field, names)?,
+            None => BTreeMap::new(),
+        };
+        let lobe = |name: &&str| {
+            let json = lobes.get(*name);
+            json.map(|json| three(&format!("{field}.{name}"), json))
+                .transpose()
+        };
+        names.iter().map(lobe).collect::<Result<Vec<_>, String>>()
     };
-    let lobe = |name: &&str| {
-        let json = lobes.get(*name);
-        json.map(|json| three(&format!("lobes.{name}"), json))
-            .transpose()
+    let samples = match fields.get("samples") {
+        Some(Json::Array(drawn)) => (drawn.iter().enumerate())
+            .map(|(k, json)| match json {
+                Json::Null => Ok(None),
+                json => direction(&format!("samples[{k}]"), json).map(Some),
+            })
+            .collect::<Result<_, _>>()?,
+        Some(json) => {
+            return Err(refusal("samples", format!("must be an array, got {json}")));
+        }
+        None => Vec::new(),
     };
     let got = Numbers {
         value: fields
@@ -146,10 +177,16 @@ fn parse(line: usize, text: &str) -> Result<(ModelId, Answer), String> {
             .map(|json| three("value", json))
             .transpose()?,
         pdf: optional("pdf")?,
-        lobes: names.iter().map(lobe).collect::<Result<_, _>>()?,
+        lobes: by_lobe("lobes")?,
+        albedo: by_lobe("albedo")?,
     };
-    if got.value.is_none() && got.pdf.is_none() && got.lobes.iter().all(Option::is_none) {
-        return Err(refusal("value", "missing; give value, pdf or lobes"));
+    let has_lobes = |lobes: &[Option<[f64; 3]>]| lobes.iter().any(Option::is_some);
+    if got.value.is_none() && got.pdf.is_none() && !has_lobes(&got.lobes) && !has_lobes(&got.albedo)
+    {
+        return Err(refusal(
+            "value",
+            "missing; give value, pdf, lobes or albedo",
+        ));
     }
     let point = exact_reference(spec.model, &spec.values, &spec.exact, wo, h)
         .map_err(|error| error.to_string())?;
@@ -159,9 +196,19 @@ fn parse(line: usize, text: &str) -> Result<(ModelId, Answer), String> {
         wo,
         wi,
         drawn_with,
+        want: Numbers {
+            // A quadrature, of which each shading point needs one.
+            albedo: if has_lobes(&got.albedo) {
+                Numbers::albedos(spec.model, &*point)
+            } else {
+                Vec::new()
+            },
+            ..Numbers::of(spec.model, &*point, wi)
+        },
         got,
-        want: Numbers::of(spec.model, &*point, wi),
         lobe_pdfs: point.lobe_pdfs(wi).0,
+        formulas: samples::of_formulas(&*point, samples.len()),
+        samples,
     };
     Ok((spec.model, answer))
 }

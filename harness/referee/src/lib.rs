@@ -6,6 +6,7 @@ pub mod args;
 #[cfg(any(doc, doctest))]
 pub mod guide;
 pub mod integrals;
+pub mod samples;
 pub mod vectors;
 pub mod verdict;
 

@@ -15,7 +15,7 @@ const UNIFORM: f64 = 1.0 / (4.0 * PI);
 const ROOT: f64 = 1.220_744_084_605_759_5;
 
 /// Returns point `n` of an even sequence in the unit cube.
-fn even(seed: u64, n: u32) -> [f64; 3] {
+pub(crate) fn even(seed: u64, n: u32) -> [f64; 3] {
     let shift = (seed % (1 << 20)) as f64 / ROOT.powi(5);
     [1, 2, 3].map(|power| (0.5 + shift + f64::from(n + 1) / ROOT.powi(power)).fract())
 }
@@ -72,11 +72,17 @@ fn direction(sin: f64, turn: f64) -> [f64; 3] {
 /// The contribution of a lobe is linear RGB per steradian, and the lobes sum to S.
 #[must_use]
 pub fn expected(model: ModelId, point: &dyn Reference<f64>, wi: [f64; 3]) -> Value {
-    let Numbers { value, pdf, lobes } = Numbers::of(model, point, wi);
-    let lobes: Map<String, Value> = (model.lobes().iter().zip(lobes))
+    let Numbers {
+        value, pdf, lobes, ..
+    } = Numbers::of(model, point, wi);
+    json!({ "value": value, "pdf": pdf, "lobes": by_name(model, lobes) })
+}
+
+/// Colours by the names of their lobes.
+fn by_name(model: ModelId, lobes: Vec<Option<[f64; 3]>>) -> Map<String, Value> {
+    (model.lobes().iter().zip(lobes))
         .map(|(name, rgb)| ((*name).to_owned(), json!(rgb)))
-        .collect();
-    json!({ "value": value, "pdf": pdf, "lobes": lobes })
+        .collect()
 }
 
 /// Returns the cases that the flags ask for, as lines of JSON or as a table.
@@ -90,6 +96,7 @@ pub fn text(flags: &Vectors) -> Result<String, Error> {
     for scene in 0..flags.scenes {
         let place = Scene::new(model, flags.seed, scene)?;
         let params = values_json(&place.values);
+        let albedo = by_name(model, Numbers::albedos(model, &*place.point));
         // Directions of their own for each shading point.
         let seed = flags.seed.wrapping_add(1 + u64::from(scene));
         for n in 0..flags.directions {
@@ -104,6 +111,7 @@ pub fn text(flags: &Vectors) -> Result<String, Error> {
                 "drawn_with": density,
                 "expected": expected(model, &*place.point, wi),
             });
+            case["expected"]["albedo"] = json!(albedo);
             if let Some((field, word)) = model.choice() {
                 case[field] = json!(word);
             }

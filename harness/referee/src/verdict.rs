@@ -2,6 +2,7 @@
 
 use crate::answers::{Answer, Answers, Numbers};
 use crate::integrals::{Estimate, by_scene};
+use crate::samples::{self, Drawn};
 use core::f64::consts::PI;
 use core::fmt;
 
@@ -60,18 +61,24 @@ pub enum Verdict {
     NotNormalised(Estimate),
     /// More light than arrives, at one shading point.
     TooBright(Estimate),
+    /// Samples beside the program's own density.
+    Drawn(Drawn),
 }
 
 impl Verdict {
-    const fn is_right(&self) -> bool {
-        matches!(self, Self::Right { .. } | Self::Mixture { .. })
+    fn is_right(&self) -> bool {
+        match self {
+            Self::Right { .. } | Self::Mixture { .. } => true,
+            Self::Drawn(drawn) => drawn.deviates() < SURE,
+            _ => false,
+        }
     }
 }
 
 impl Line {
     /// Returns true if nothing is wrong.
     #[must_use]
-    pub const fn is_right(&self) -> bool {
+    pub fn is_right(&self) -> bool {
         self.verdict.is_right()
     }
 }
@@ -109,6 +116,13 @@ impl fmt::Display for Line {
             Verdict::TooBright(Estimate { mean, error }) => {
                 write!(f, "WRONG: returns {mean:.3} +- {error:.3} of the light")
             }
+            Verdict::Drawn(drawn) => {
+                if self.is_right() {
+                    write!(f, "right: {drawn}")
+                } else {
+                    write!(f, "WRONG: {drawn}; {}", drawn.worst)
+                }
+            }
         }
     }
 }
@@ -126,6 +140,12 @@ pub fn judge(answers: &Answers, tolerance: f64) -> Vec<Line> {
             numbers.lobes[place].as_ref().map(|rgb| &rgb[..])
         });
         add(&format!("lobe {name}"), compared(&pairs, tolerance));
+    }
+    for (place, name) in answers.lobes.iter().enumerate() {
+        let pairs = pairs(answers, |numbers| {
+            numbers.albedo.get(place)?.as_ref().map(|rgb| &rgb[..])
+        });
+        add(&format!("albedo {name}"), compared(&pairs, tolerance));
     }
     let value = compared(
         &pairs(answers, |numbers| {
@@ -156,6 +176,7 @@ pub fn judge(answers: &Answers, tolerance: f64) -> Vec<Line> {
     if sums {
         add("pdf's integral", not_normalised(answers));
     }
+    add("samples", samples::judge(answers, !sums));
     lines
 }
 

@@ -64,7 +64,7 @@ fn bad_input_is_refused_by_field_and_value() {
         (String::new(), "must have a case, got nothing"),
         (
             case.to_string(),
-            "line 1: value: missing; give value, pdf or lobes",
+            "line 1: value: missing; give value, pdf, lobes or albedo",
         ),
         (
             changed("wi", "[1, 1, 0]"),
@@ -76,6 +76,18 @@ fn bad_input_is_refused_by_field_and_value() {
             "line 1: lobes.ttt",
         ),
         (changed("pdf", "null"), "line 1: pdf"),
+        (
+            changed("albedo", r#"{"r": 1}"#),
+            "line 1: albedo.r: must be an array of 3",
+        ),
+        (
+            changed("samples", "1"),
+            "line 1: samples: must be an array, got 1",
+        ),
+        (
+            changed("samples", "[null, [1, 0, 0], [0, 2, 0]]"),
+            "line 1: samples[2]: must be a unit vector",
+        ),
         (
             changed("drawn_with", "0"),
             "line 1: drawn_with: must be above 0, got 0",

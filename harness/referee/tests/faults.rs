@@ -11,7 +11,7 @@ use hairis_variants::ModelId;
 use serde_json::{Value, json};
 
 /// Numbers of an array.
-fn three(value: &Value) -> [f64; 3] {
+pub(crate) fn three(value: &Value) -> [f64; 3] {
     [0, 1, 2].map(|k| value[k].as_f64().unwrap())
 }
 
@@ -20,7 +20,7 @@ fn cos(v: [f64; 3]) -> f64 {
 }
 
 /// Returns the formulas at a case, with parameters changed.
-fn formulas(case: &Value, set: &[&str]) -> (ModelId, Box<dyn Reference<f64>>) {
+pub(crate) fn formulas(case: &Value, set: &[&str]) -> (ModelId, Box<dyn Reference<f64>>) {
     let object = json!({ "model": case["model"], "params": case["params"] }).to_string();
     let [spec] = &MaterialSpec::parse_all(&object).unwrap()[..] else {
         panic!("one material")
@@ -35,7 +35,7 @@ fn formulas(case: &Value, set: &[&str]) -> (ModelId, Box<dyn Reference<f64>>) {
 }
 
 /// Asserts that these verdicts are wrong with these words, in order, and that all others are right.
-fn assert_wrong(what: &str, answers: &str, wrong: &[&str]) {
+pub(crate) fn assert_wrong(what: &str, answers: &str, wrong: &[&str]) {
     let lines = verdicts(answers);
     let found: Vec<_> = lines.iter().filter(|line| line.contains("WRONG")).collect();
     let fits = found.len() == wrong.len()
@@ -174,6 +174,30 @@ fn wrong_shapes_are_found_by_lobe() {
         "energy .. of the light",
     ];
     assert_wrong("glints", &bright, &words);
+}
+
+/// Glints of MoonRay: Gaussians of the azimuth with weights that are themselves Gaussians of it, and the rest of TRT for what they leave.
+#[test]
+fn weights_that_depend_on_the_azimuth_are_no_mixture() {
+    let answers = answered(&cases("gaussian"), |case, line| {
+        let number = |name: &str| case["params"][name].as_f64().unwrap();
+        let phi = |name: &str| {
+            case[name][2]
+                .as_f64()
+                .unwrap()
+                .atan2(case[name][1].as_f64().unwrap())
+        };
+        let apart = (phi("wo") - phi("wi")).cos().acos() - number("phi_g");
+        let weight = (-0.5 * (apart / number("gamma_g")).powi(2)).exp();
+        multiply_lobe(line, "glint", weight);
+        multiply_lobe(line, "trt", 1.0 - weight);
+    });
+    let words = [
+        "lobe trt .. in shape",
+        "lobe glint .. in shape",
+        "value .. in shape",
+    ];
+    assert_wrong("MoonRay", &answers, &words);
 }
 
 #[test]

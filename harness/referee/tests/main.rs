@@ -3,6 +3,7 @@
 
 mod cli;
 mod faults;
+mod samples;
 
 use hairis_referee::answers::Answers;
 use hairis_referee::args::Vectors;
