@@ -7,7 +7,7 @@ root=$(cd ../../../.. && pwd)
 target=$(realpath -m "${CARGO_TARGET_DIR:-$root/target}")
 out=$target/page/three work=$target/three-build
 # The page's script ends with this one.
-[ -e "$target/page-build/dual.wasm" ] && [ -e "$target/page/hairis.wasm" ] || exec "$root/harness/page/build.sh" "$@"
+[ -e "$target/page-build/dual.wasm" ] && compgen -G "$target/page/*.wgsl" > /dev/null || exec "$root/harness/page/build.sh" "$@"
 mkdir -p "$out" "$work"
 cp package.json "$work"
 cp package.json "$out"
