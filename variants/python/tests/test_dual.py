@@ -1,11 +1,14 @@
 """Dual scattering: against its definition by the samples of a material, and its functions against sums."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import hairis
 import hairis.dual
 
+VARIANTS = Path(__file__).parents[2]
 DEPTHS = np.array([0.0, 0.5, 3.0], np.float32)
 
 
@@ -22,6 +25,15 @@ def test_albedos_are_those_of_samples(model: str) -> None:
         mean, error = light.mean(axis=0), light.std(axis=0) / len(light) ** 0.5
         # The polynomials have errors of up to 1e-2 where energy conservation sets in.
         assert np.all(np.abs(averages[side] - mean) < 5 * error + 0.01), (side, averages[side], mean)
+
+
+def test_the_gain_is_one_number() -> None:
+    gain = hairis.dual.GAIN
+    for file, text in [
+        ("capi/include/hairis.h", f"#define HAIRIS_DUAL_GAIN {gain}f"),
+        ("shaders/examples/three/src/multiple.js", f"export const GAIN = {gain};"),
+    ]:
+        assert text in (VARIANTS / file).read_text(encoding="utf-8"), file
 
 
 def test_depths_are_shares_of_light() -> None:
