@@ -6,10 +6,12 @@ mod artist;
 mod error;
 mod pigment;
 mod presets;
+mod space;
 
 pub use artist::{ArtistControls, Glints, Highlight, Transmission};
 pub use error::{ParamError, Rule};
 pub use pigment::{Pigments, melanin_absorption, melanin_concentrations, transmittance};
+pub use space::RgbSpace;
 
 /// Smallest width that [`HairParams::new`] accepts, in radians.
 pub const MIN_WIDTH: f32 = 1e-4;

@@ -2,8 +2,8 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::params::{
-    ArtistControls, Glints, HairDesc, Highlight, Rule, Transmission, melanin_absorption,
-    transmittance,
+    ArtistControls, Glints, HairDesc, Highlight, Pigments, RgbSpace, Rule, Transmission,
+    melanin_absorption, transmittance,
 };
 use hairis::{HairParams, ParamError};
 use hairis_conformance::published::quadrature::{panels, rule};
@@ -314,4 +314,50 @@ fn artist_errors_name_the_control() {
     };
     let error = HairParams::from_artist(&nan).unwrap_err();
     assert_eq!(error.field(), "primary.shift_deg", "NaN never passes");
+}
+
+/// Matrix from Rec. 709 to `ACEScg` as the configurations of `OpenColorIO` for ACES have it.
+#[test]
+fn spaces_of_colour_are_converted() {
+    let expected = [
+        [0.613_097, 0.339_523, 0.047_379],
+        [0.070_194, 0.916_354, 0.013_452],
+        [0.020_616, 0.109_570, 0.869_815],
+    ];
+    let (rec, aces) = (RgbSpace::REC_709, RgbSpace::ACES_CG);
+    for (row, expected) in rec
+        .to(&aces)
+        .into_iter()
+        .flatten()
+        .zip(expected.as_flattened())
+    {
+        assert!((row - expected).abs() < 1e-6, "{row} and {expected}");
+    }
+    for (k, same) in rec.to(&rec).into_iter().flatten().enumerate() {
+        assert!((same - f64::from(u8::from(k % 4 == 0))).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn pigments_of_another_space_have_the_same_colours() -> Result<(), ParamError> {
+    let (rec, aces) = (RgbSpace::REC_709, RgbSpace::ACES_CG);
+    for (own, named) in [
+        (Pigments::D_EON, Pigments::D_EON_ACES_CG),
+        (Pigments::CYCLES, Pigments::CYCLES_ACES_CG),
+    ] {
+        let converted = own.converted(&rec, &aces)?;
+        let back = named.converted(&aces, &rec)?;
+        let units = |pigments: &Pigments| [pigments.eumelanin, pigments.pheomelanin].concat();
+        for (found, expected) in [(converted, named), (back, own)] {
+            for (a, b) in units(&found).into_iter().zip(units(&expected)) {
+                assert!((a - b).abs() < 2e-6, "{a} and {b}");
+            }
+        }
+    }
+    // White hair stays white, and colours that a space does not have are clipped.
+    let white = Pigments::from_colors([[1.0; 3]; 2])?.converted(&rec, &aces)?;
+    assert!(white.eumelanin.iter().all(|sigma| *sigma < 1e-6));
+    let green = Pigments::from_colors([[0.0, 1.0, 0.0]; 2])?.converted(&aces, &rec)?;
+    assert!(green.eumelanin[0] > 60.0 && green.eumelanin[1] == 0.0);
+    Ok(())
 }

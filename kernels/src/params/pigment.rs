@@ -29,6 +29,16 @@ impl Pigments {
         eumelanin: [0.506, 0.841, 1.653],
         pheomelanin: [0.343, 0.733, 1.924],
     };
+    /// [`D_EON`](Self::D_EON) [`converted`](Self::converted) to `ACEScg`.
+    pub const D_EON_ACES_CG: Self = Self {
+        eumelanin: [0.537_195_3, 0.681_218_4, 1.240_778_1],
+        pheomelanin: [0.284_090_1, 0.389_818_73, 0.929_053_66],
+    };
+    /// [`CYCLES`](Self::CYCLES) [`converted`](Self::converted) to `ACEScg`.
+    pub const CYCLES_ACES_CG: Self = Self {
+        eumelanin: [0.644_092_2, 0.820_753_4, 1.486_195_3],
+        pheomelanin: [0.502_320_4, 0.709_169_15, 1.638_424_4],
+    };
 
     /// Makes pigments of the colours that a unit of eumelanin and of pheomelanin have, linear RGB: `-ln color`. In the working space of a
     /// renderer, the colours are those of that space.

@@ -12,7 +12,20 @@ use hairis::simd::Lanes;
 const SHIFTS: [(&str, Shifts); 2] = [("d-eon", Shifts::DEon), ("small-angle", Shifts::SmallAngle)];
 
 const LOBES: Kind = Kind::Numbers(&["r", "tt", "trt"]);
-const PIGMENTS: [&str; 2] = ["d-eon", "cycles"];
+/// Words of pigments for Rec. 709 and for `ACEScg`, and what they stand for.
+const PIGMENTS: [&str; 4] = ["d-eon", "cycles", "d-eon-acescg", "cycles-acescg"];
+const EUMELANIN: [&[f32]; 4] = [
+    &Pigments::D_EON.eumelanin,
+    &Pigments::CYCLES.eumelanin,
+    &Pigments::D_EON_ACES_CG.eumelanin,
+    &Pigments::CYCLES_ACES_CG.eumelanin,
+];
+const PHEOMELANIN: [&[f32]; 4] = [
+    &Pigments::D_EON.pheomelanin,
+    &Pigments::CYCLES.pheomelanin,
+    &Pigments::D_EON_ACES_CG.pheomelanin,
+    &Pigments::CYCLES_ACES_CG.pheomelanin,
+];
 
 impl ChiangDesc {
     /// Returns the description that the values of the fields form, in any type of number. Nothing is checked, no field stands in for
@@ -118,10 +131,7 @@ impl Parameters for ChiangParams {
             Rule::NotNegative,
             "Absorption of a unit of eumelanin.",
         )
-        .named(
-            &PIGMENTS,
-            &[&Pigments::D_EON.eumelanin, &Pigments::CYCLES.eumelanin],
-        )
+        .named(&PIGMENTS, &EUMELANIN)
         .optional(),
         Field::new(
             "pheomelanin",
@@ -129,10 +139,7 @@ impl Parameters for ChiangParams {
             Rule::NotNegative,
             "Absorption of a unit of pheomelanin.",
         )
-        .named(
-            &PIGMENTS,
-            &[&Pigments::D_EON.pheomelanin, &Pigments::CYCLES.pheomelanin],
-        )
+        .named(&PIGMENTS, &PHEOMELANIN)
         .optional(),
     ];
     const PRESETS: &'static [(&'static str, Self)] = &Self::presets();
