@@ -287,10 +287,11 @@ def pictures():
 def dual():
     """Dual scattering over paths, by scene, model and colour."""
     record = Record("dual.csv")
+    percent = lambda row, name: f"{100 * float(row[name]):.0f}%"
     rows = [[row["scene"], row["model"], row["colour"], *(f"{float(row[channel]):.2f}" for channel in ("red", "green", "blue")),
-             f"{100 * float(row['once']):.0f}%", f"{100 * float(row['by pixel']):.0f}%", f"{float(row['dual ms']):.0f} and {float(row['paths ms']):.0f} ms"]
-            for row in record.rows]
-    return record, ["scene", "model", "colour", "red", "green", "blue", "once", "by pixel", "time, dual and paths"], rows
+             f"{100 * float(row['noise']):.1f}%", percent(row, "once"), percent(row, "by block"),
+             f"{float(row['dual ms']):.0f} and {float(row['paths ms']):.0f} ms"] for row in record.rows]
+    return record, ["scene", "model", "colour", "red", "green", "blue", "noise", "once", "by block", "time, dual and paths"], rows
 
 
 TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "dual": dual, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "pictures": pictures, "refits": refits, "rtxcr": rtxcr, "speed": speed, "uphill": uphill}

@@ -275,7 +275,7 @@ pub struct Figures {
     /// How directions towards rectangular lights are drawn
     #[arg(long, value_enum, default_value_t)]
     pub rectangles: RectangleSampling,
-    /// Compare the models, too, where --scene is given
+    /// Compare the models, and dual scattering with paths, too, where --scene is given
     #[arg(long)]
     pub models: bool,
     /// Print the table of all scenes, and the verdicts on standard error

@@ -1,6 +1,7 @@
 //! Subcommand `hairis-render figures`, which compares samplers side by side, as pictures and as numbers, on one page.
 
 pub mod csv;
+pub mod dual;
 pub mod map;
 pub mod measure;
 pub mod models;
@@ -15,6 +16,7 @@ use crate::args::Figures;
 use crate::environment::environment;
 use crate::hair::Choice;
 use crate::scenes::Name;
+use dual::Pair;
 use hairis_instruments::error::Error;
 use hairis_instruments::interrupt::Interrupt;
 use hairis_instruments::program::{print, say};
@@ -38,6 +40,17 @@ pub const SCENES: [Name; 7] = [
     Name::Box,
     Name::Head,
 ];
+
+/// Measurements that are finished.
+#[derive(Debug, Default)]
+pub struct Done {
+    /// Samplers by scene.
+    pub scenes: Vec<Measured>,
+    /// Models by preset.
+    pub presets: Vec<Preset>,
+    /// Dual scattering by preset and model.
+    pub dual: Vec<Pair>,
+}
 
 /// Compares samplers on every scene, and writes `report.html` with its figures as `figures.csv`,
 /// its settings as `figures.json` and an EXR file of each picture beside it. A run that was stopped
@@ -101,12 +114,17 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     }
     prepare(&flags.out)?;
     let store = Store::new(&flags.out, Interrupt::watch())?;
-    // Models are compared where the scenes are not chosen one by one.
-    let presets: &[&'static str] = match (flags.scene.is_empty() || flags.models, flags.quick) {
-        (false, _) => &[],
-        (true, true) => &models::PRESETS[..1],
-        (true, false) => &models::PRESETS,
-    };
+    // Models, and dual scattering with paths, are compared where the scenes are not chosen one by one.
+    type Names = [&'static str];
+    let (presets, models): (&Names, &Names) =
+        match (flags.scene.is_empty() || flags.models, flags.quick) {
+            (false, _) => (&[], &[]),
+            (true, true) => (&models::PRESETS[..1], &dual::MODELS[..1]),
+            (true, false) => (&models::PRESETS, &dual::MODELS),
+        };
+    let pairs = dual::COLOURS
+        .into_iter()
+        .flat_map(|preset| models.iter().map(move |model| [*model, preset]));
     // Each shard owns every n-th of the scenes and models.
     let owns = |place: usize| flags.shard.is_none_or(|shard| shard.owns(place));
     let count = scenes.len();
@@ -115,12 +133,20 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         .filter(|(place, _)| owns(*place))
         .map(|(_, scene)| scene)
         .collect();
+    let after = count + presets.len();
     let presets: Vec<_> = (count..)
         .zip(presets)
         .filter(|(place, _)| owns(*place))
         .map(|(_, name)| *name)
         .collect();
-    let steps = plan.steps(scenes.len()) + presets.len() * ModelId::defaults_of_names().count();
+    let pairs: Vec<_> = (after..)
+        .zip(pairs)
+        .filter(|(place, _)| owns(*place))
+        .map(|(_, pair)| pair)
+        .collect();
+    let steps = plan.steps(scenes.len())
+        + presets.len() * ModelId::defaults_of_names().count()
+        + pairs.len();
     let bar = bar(
         steps as u64,
         "{msg:>30} {wide_bar} {percent:>3}% {elapsed} (left {eta})",
@@ -137,25 +163,33 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         })
         .collect();
     let settings = csv::settings(&plan, flags, &names);
-    let (mut all, mut written) = (Vec::new(), None);
+    let (mut done, mut written) = (Done::default(), None);
+    // Write after every scene, so that a run that is stopped leaves a page.
+    let mut write = |done: &Done| {
+        if flags.shard.is_none() {
+            written = Some(page::write(done, &plan, flags, &flags.out)?);
+            csv::write(done, &settings, &flags.out)?;
+        }
+        Ok::<_, Error>(())
+    };
     for ((name, map, hair), stem) in scenes.into_iter().zip(names::of_pictures(&titles)) {
         let measured = Measured::render(name, map, &hair, &plan, flags.seed, &store, &step)?;
-        if flags.shard.is_some() {
-            continue;
-        }
-        measured.write_pictures(&flags.out, &stem)?;
-        all.push(measured);
-        // Write after every scene, so that a run that is stopped leaves a page.
-        written = Some(page::write(&all, &[], &plan, flags, &flags.out)?);
-        csv::write(&all, &[], &settings, &flags.out)?;
-    }
-    let mut compared = Vec::new();
-    for name in presets {
-        compared.push(Preset::render(name, &plan, flags.seed, &store, &step)?);
         if flags.shard.is_none() {
-            written = Some(page::write(&all, &compared, &plan, flags, &flags.out)?);
-            csv::write(&all, &compared, &settings, &flags.out)?;
+            measured.write_pictures(&flags.out, &stem)?;
         }
+        done.scenes.push(measured);
+        write(&done)?;
+    }
+    for name in presets {
+        done.presets
+            .push(Preset::render(name, &plan, flags.seed, &store, &step)?);
+        write(&done)?;
+    }
+    for [model, preset] in pairs {
+        step(&format!("{preset}: {model}, dual scattering"));
+        let pair = Pair::render(dual::SCENE, [model, preset], &plan, flags.seed, &store)?;
+        done.dual.push(pair);
+        write(&done)?;
     }
     bar.finish_and_clear();
     if let Some(shard) = flags.shard {

@@ -158,16 +158,26 @@ impl Reference {
     /// relative difference, from which the noise of both is subtracted.
     #[must_use]
     pub fn difference(&self, other: &Self) -> (f64, f64) {
-        let square = |k: usize| {
-            let (apart, noise) = (
-                self.luminances[k] - other.luminances[k],
-                self.variances[k] + other.variances[k],
-            );
-            (apart * apart - noise) / self.unit(k)
-        };
-        let count = self.luminances.len().max(1);
-        let mean = (0..self.luminances.len()).map(square).sum::<f64>() / count as f64;
+        let squares = self.relative_squares(&self.squares(other));
+        let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
         (other.mean / self.mean, mean.max(0.0).sqrt())
+    }
+
+    /// Returns the squared difference in luminance of every pixel of another scene, from which the noise of both is subtracted.
+    #[must_use]
+    pub fn squares(&self, other: &Self) -> Vec<f64> {
+        let square = |k: usize| {
+            let apart = self.luminances[k] - other.luminances[k];
+            apart * apart - (self.variances[k] + other.variances[k])
+        };
+        (0..self.luminances.len()).map(square).collect()
+    }
+
+    /// Returns the standard error of the mean luminance of some of the pixels, over that mean.
+    #[must_use]
+    pub fn noise(&self, pixels: &[usize]) -> f64 {
+        let sum = |of: &[f64]| pixels.iter().map(|k| of[*k]).sum::<f64>();
+        sum(&self.variances).sqrt() / sum(&self.luminances)
     }
 
     /// Returns the errors of a picture, from which the part that is due to noise of the reference is subtracted.

@@ -1,7 +1,8 @@
 //! Figures of the page as a CSV table for other programs.
 
+use super::Done;
+use super::dual::Pair;
 use super::measure::{Measured, Plan};
-use super::models::Preset;
 use super::page::kind;
 use super::rates::level;
 use super::verdict::Gain;
@@ -49,17 +50,12 @@ pub(super) fn settings(plan: &Plan, flags: &Figures, maps: &[String]) -> Figures
 }
 
 /// Writes `figures.csv` with the figures, and `figures.json` with the settings they depend on.
-pub(super) fn write(
-    all: &[Measured],
-    presets: &[Preset],
-    settings: &FiguresSettings,
-    out: &Path,
-) -> Result<(), Error> {
+pub(super) fn write(done: &Done, settings: &FiguresSettings, out: &Path) -> Result<(), Error> {
     let mut rows = Vec::new();
-    for measured in all {
+    for measured in &done.scenes {
         scene(measured, &mut rows);
     }
-    for preset in presets {
+    for preset in &done.presets {
         for (model, brightness, look) in preset.differences() {
             let start = Start {
                 scene: "models".to_owned(),
@@ -75,6 +71,7 @@ pub(super) fn write(
             rows.push(start.row(what, Estimate::exact(look), false));
         }
     }
+    rows.extend(done.dual.iter().flat_map(Pair::rows));
     whole(&out.join("figures.csv"), |file| {
         columns(&rows).write_csv(file)
     })?;

@@ -1,11 +1,11 @@
 //! Page of the report, with its charts, tables and pictures.
 
+use super::Done;
 use super::map::{Map, scale};
 use super::measure::{BySampler, Measured, Plan, SAMPLERS};
-use super::models::{self, Preset};
 use super::panel::{Column, crops, panel};
-use super::rates;
 use super::verdict::{self, BELOW, Gain, MEASURES, best, gain, headline, sentence, visible};
+use super::{dual, models, rates};
 use crate::args::Figures;
 use crate::film::Crop;
 use crate::lights::RectangleSampling;
@@ -28,34 +28,32 @@ use std::path::Path;
 ///
 /// Returns an error if the file cannot be written.
 pub fn write(
-    all: &[Measured],
-    presets: &[Preset],
+    done: &Done,
     plan: &Plan,
     flags: &Figures,
     out: &Path,
 ) -> Result<(Report, Table), Error> {
     let path = out.join("report.html");
-    let page = page(all, presets, plan, flags).map_err(|source| Error::Output {
+    let page = page(done, plan, flags).map_err(|source| Error::Output {
         path: path.clone(),
         source,
     })?;
     whole(&path, |out| out.write_all(page.html().as_bytes()))?;
-    Ok((page, summary(all)))
+    Ok((page, summary(&done.scenes)))
 }
 
-fn page(
-    all: &[Measured],
-    presets: &[Preset],
-    plan: &Plan,
-    flags: &Figures,
-) -> std::io::Result<Report> {
+fn page(done: &Done, plan: &Plan, flags: &Figures) -> std::io::Result<Report> {
+    let all = &*done.scenes;
     let machine = machine!();
     let mut sections = vec![Section::new("Summary").tables([summary(all)])];
     for measured in all {
         sections.push(section(measured)?);
     }
-    if !presets.is_empty() {
-        sections.push(models::section(presets)?);
+    if !done.presets.is_empty() {
+        sections.push(models::section(&done.presets)?);
+    }
+    if !done.dual.is_empty() {
+        sections.push(dual::section(&done.dual)?);
     }
     let Plan {
         side,
@@ -76,6 +74,9 @@ fn page(
         all.iter()
             .map(|measured| [literal(&measured.title()), headline(measured)]),
     );
+    if !done.dual.is_empty() {
+        verdicts.push(["Dual scattering".to_owned(), dual::sentence(&done.dual)]);
+    }
     let method = Section::new("Method and machine")
         .paragraph(format!(
             "Pictures of {side} by {side} pixels, procedural hair of {strands} strands, sampled by \
