@@ -38,17 +38,6 @@ impl Histogram {
         self.batches.push(cells);
     }
 
-    /// Adds the batches of another histogram of the same size.
-    pub fn append(&mut self, other: Self) {
-        self.batches.extend(other.batches);
-    }
-
-    /// Returns the numbers of inclinations and azimuths.
-    #[must_use]
-    pub const fn size(&self) -> [usize; 2] {
-        self.size
-    }
-
     /// Returns the cell of a direction.
     #[must_use]
     #[expect(
