@@ -293,16 +293,20 @@ impl Lights {
         }
     }
 
-    /// Returns the values of a model that are nearest in L1, found from `starts` starts: the measured preset, the others, and values around
+    /// Returns the values of a model that are nearest in L1, found from `count` starts: the measured preset, the others, and values around
     /// those. The optimiser compares the means of S of the cells with S in their middles; of the ends and starts, that with the least
     /// [`difference`](Self::difference) is returned, with the light of the model.
     ///
     /// # Errors
     ///
     /// Returns no error for models of the registry, whose presets are in their ranges.
-    pub fn fit(&self, to: ModelId, starts_count: usize) -> Result<(Values, Self), ParamError> {
+    ///
+    /// # Panics
+    ///
+    /// Panics if `count` is 0.
+    pub fn fit(&self, to: ModelId, count: usize) -> Result<(Values, Self), ParamError> {
         let config = FitConfig {
-            starts: starts_count,
+            starts: count,
             ..FitConfig::default()
         };
         let measured = to.measured();
@@ -321,9 +325,7 @@ impl Lights {
         });
         let candidates = candidates.collect::<Result<Vec<_>, ParamError>>()?;
         let nearest = candidates.into_iter().flatten();
-        let (_, values, light) = nearest
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .expect("there is a start");
+        let (_, values, light) = nearest.min_by(|a, b| a.0.total_cmp(&b.0)).expect("a start");
         Ok((values, light))
     }
 
