@@ -294,7 +294,54 @@ def dual():
     return record, ["scene", "model", "colour", "red", "green", "blue", "noise", "once", "by block", "time, dual and paths"], rows
 
 
-TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "dual": dual, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "pictures": pictures, "refits": refits, "rtxcr": rtxcr, "speed": speed, "uphill": uphill}
+PHYSICS = ["gaussian", "cauchy", "kajiya-kay", "chiang", "d-eon"]
+
+
+def physics():
+    """L1 distance of fitted models from traced fibres, and of another seed."""
+    record = Record("physics.csv")
+    totals = {(row["fibre"], row["model"]): f"{100 * float(row['total']):.1f}%" for row in record.rows}
+    fibres = dict.fromkeys(row["fibre"] for row in record.rows)
+    rows = [[fibre, *(totals[fibre, model] for model in [*PHYSICS, "another seed"])] for fibre in fibres]
+    # Names of fields stand before their numbers.
+    free = lambda values: str(sum(len(part.split()) - 1 for part in values.split("; ")))
+    fitted = {row["model"]: free(row["values"]) for row in record.rows}
+    rows.insert(0, ["numbers that are fitted", *(fitted[model] for model in PHYSICS), "-"])
+    return record, ["", *PHYSICS, "another seed"], rows
+
+
+def physics_lobes():
+    """L1 distance of R, TT and further light, each over the light of that part."""
+    record = Record("physics.csv")
+    parts = ["R", "TT", "further"]
+    row_of = {(row["fibre"], row["model"]): row for row in record.rows}
+    # A part without light has no distance.
+    share = lambda row, truth, part: f"{100 * float(row[part]):.0f}%" if float(truth["energy " + part]) > 5e-4 else "-"
+    body = []
+    for fibre in dict.fromkeys(row["fibre"] for row in record.rows):
+        truth = row_of[fibre, "another seed"]
+        cell = lambda row: ", ".join(share(row, truth, part) for part in parts)
+        energies = ", ".join(f"{100 * float(truth['energy ' + part]):.1f}%" for part in parts)
+        models = [cell(row_of[fibre, model]) for model in PHYSICS if model != "kajiya-kay"]
+        body.append([fibre, energies, *models, cell(truth)])
+    header = ["R, TT, further", "light", *(model for model in PHYSICS if model != "kajiya-kay"), "another seed"]
+    return record, header, body
+
+
+def physics_fibres():
+    """Parameters of the traced fibres."""
+    record = Record("physics.csv")
+    body = []
+    for row in record.rows:
+        if row["model"] == "another seed":
+            values = dict(part.split(" ", 1) for part in row["values"].split("; "))
+            medulla = values["medulla"].split(" ")
+            core = ", ".join(medulla) if float(medulla[0]) > 0 else "-"
+            body.append([row["fibre"], values["roughness"], values["tilt"] + "°", values["aspect"], values["sigma_a"].replace(" ", ", "), core])
+    return record, ["fibre", "roughness", "tilt", "aspect", "absorption, RGB", "medulla: size, scattering, g"], body
+
+
+TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "dual": dual, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "physics": physics, "physics-fibres": physics_fibres, "physics-lobes": physics_lobes, "pictures": pictures, "refits": refits, "rtxcr": rtxcr, "speed": speed, "uphill": uphill}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 

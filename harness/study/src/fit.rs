@@ -21,6 +21,7 @@ pub(crate) mod page;
 pub mod points;
 mod residual;
 mod rules;
+pub mod truth;
 pub mod variables;
 
 pub(crate) use over::value_columns;

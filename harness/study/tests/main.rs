@@ -7,3 +7,4 @@ mod difference;
 mod fit;
 mod lights;
 mod study;
+mod truth;

@@ -15,6 +15,8 @@
 //! All implement [`Reference`], and `Box<dyn Reference<f64>>` is the handle of a model chosen at run time: see [`reference()`] for
 //! the models of the registry, and [`HairFormulas`] for the published model. [`Formulas`] pairs a kernel with its formulas.
 //!
+//! [`truth`] traces light through a rough, tilted, elliptic fibre with a medulla, which all models approximate.
+//!
 //! - Conventions: those of [`hairis`]. `wo` is the paper's `omega_r`, `wi` its `omega_i`.
 //! - Numbers: [`Real`], with the elementary functions of `libm` unless the caller provides others.
 #![cfg_attr(
@@ -33,6 +35,7 @@ mod quadrature;
 mod real;
 mod registry;
 mod steps;
+pub mod truth;
 
 pub use chiang::{ChiangConstants, ChiangFormulas, ChiangReference, Selection, bessel_i0_scaled};
 pub use d_eon::{DEonReference, RtxcrFaults, RtxcrReference};

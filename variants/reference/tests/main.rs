@@ -3,5 +3,6 @@
 
 mod fibers;
 mod published;
+mod truth;
 
 use hairis_conformance::published::quadrature;

@@ -40,7 +40,7 @@ pub struct Points {
     /// S of the look, by view and direction.
     pub(super) look: Vec<Vec<[f64; 3]>>,
     /// Blur of each view, if the norm has one.
-    blurs: Option<Vec<Blur>>,
+    pub(super) blurs: Option<Vec<Blur>>,
 }
 
 impl Points {
