@@ -3,6 +3,7 @@
 mod solve;
 
 use crate::{Chiang, ChiangDesc, ModelId, Values};
+use core::f32::consts::{FRAC_PI_3, FRAC_PI_6};
 use core::fmt;
 use hairis::ParamError;
 use hairis::params::Rule;
@@ -99,11 +100,11 @@ const MOST_ABSORPTION: f32 = 16.0;
 const LEAST: f32 = 1e-12;
 /// Inclinations of a mass, rad, and their weights: Gauss's rule for the weight `cos^2 theta`, which hits under isotropic light have.
 const INCLINATIONS: [[f32; 2]; 5] = [
-    [-1.047_197_6, 1.0 / 12.0],
-    [-0.523_598_8, 0.25],
+    [-FRAC_PI_3, 1.0 / 12.0],
+    [-FRAC_PI_6, 0.25],
     [0.0, 1.0 / 3.0],
-    [0.523_598_8, 0.25],
-    [1.047_197_6, 1.0 / 12.0],
+    [FRAC_PI_6, 0.25],
+    [FRAC_PI_3, 1.0 / 12.0],
 ];
 /// Coefficients of the curve of a mass, by powers of `1 - s` from the first, fitted to the head with straight hair of `hairis-render` under
 /// uniform light: 60 materials of three models, to 1.2% of the light (rms).

@@ -2,7 +2,7 @@
 
 use super::{QUANTITIES, TERMS};
 use crate::columns::SampleColumns;
-use crate::model::{Hit, Lobe};
+use crate::model::{Hit, Lobe, Precision};
 use crate::simd::Lanes;
 use core::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, PI};
 use glam::Vec3;
@@ -161,7 +161,7 @@ pub fn albedo_and_forward(theta: f32, lobes: usize, draw: &mut Draw<'_>) -> [[f3
             sums[1][c] += f64::from(weight[c] * forward);
         }
     });
-    sums.map(|sum| sum.map(|channel| channel as f32))
+    sums.map(|sum| sum.map(f64::rounded))
 }
 
 /// Returns the angle about the fibre of an offset, whose sine it is, and its share. Angles are denser towards the edges, so that their sum
