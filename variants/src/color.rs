@@ -255,10 +255,7 @@ pub fn with_color(
     Rule::NotNegative.check("color", &color)?;
     let asked = color.map(|channel| channel.min(MOST));
     let base = dye.without(values);
-    let black = match dye {
-        Dye::Absorption(_) => -libm::expm1f(-MOST_ABSORPTION),
-        Dye::Intensities(_) => 1.0,
-    };
+    let black = -libm::expm1f(-MOST_ABSORPTION);
     let can_add = matches!(dye, Dye::Intensities(_));
     let absorbed = solve::solve(asked, black, can_add, &mut |absorbed| {
         shown(id, &dye.with(&base, absorbed), of, measure)

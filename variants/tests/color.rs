@@ -1,11 +1,11 @@
 //! Colours that are asked against those that the formulas show.
 
 use core::f64::consts::{FRAC_PI_2, PI};
+use core::fmt::Write as _;
 use hairis_conformance::cases;
 use hairis_reference::reference;
 use hairis_variants::color::{ColorError, ColorOf};
 use hairis_variants::{ChiangDesc, ModelId, Values};
-use std::fmt::Write as _;
 
 /// Models with a colour, each with the material that gets it.
 fn subjects() -> [(ModelId, Values); 3] {

@@ -43,8 +43,8 @@ pub unsafe extern "C" fn hairis_params_set_color(
         // SAFETY: the material is initialised before it is read.
         unsafe {
             init(material.as_mut_ptr(), id, values, ENERGY_CONSERVING)?;
-            let draw = &mut drawing(material.as_ptr());
-            Ok(albedo_and_forward(theta, id.lobes().len(), draw))
+            let mut draw = drawing(material.as_ptr());
+            Ok(albedo_and_forward(theta, id.lobes().len(), &mut draw))
         }
     });
     match colored {

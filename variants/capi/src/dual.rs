@@ -19,8 +19,7 @@ use hairis::{Hit, Lobe};
 /// The material must be initialised, and live as long as the function.
 pub(crate) unsafe fn drawing(
     from: *const RawMaterial,
-) -> impl FnMut(Hit, Lobe, [&[f32]; 3], SampleColumns<'_>) {
-    let mut is_dark = [None; Lobe::COUNT];
+) -> impl Fn(Hit, Lobe, [&[f32]; 3], SampleColumns<'_>) {
     move |hit, lobe, xi, out| {
         let mut bsdf = MaybeUninit::<RawBsdf>::zeroed();
         let columns = |vector: Option<[&mut [f32]; 3]>| {
@@ -40,12 +39,9 @@ pub(crate) unsafe fn drawing(
         // SAFETY: the material is initialised, the BSDF is written before it is read, and columns have one length.
         unsafe {
             hairis_prepare(bsdf.as_mut_ptr(), from, wo.x, wo.y, wo.z, hit.h);
-            let is_dark = *is_dark[lobe.index()].get_or_insert_with(|| {
-                let mut albedo = [[0.0; 3]; Lobe::COUNT];
-                hairis_albedo(bsdf.as_ptr(), &raw mut albedo);
-                albedo[lobe.index()].into_iter().all(|share| share <= 0.0)
-            });
-            if is_dark {
+            let mut albedo = [[0.0; 3]; Lobe::COUNT];
+            hairis_albedo(bsdf.as_ptr(), &raw mut albedo);
+            if albedo[lobe.index()].into_iter().all(|share| share <= 0.0) {
                 return;
             }
             hairis_restrict(bsdf.as_mut_ptr(), 1 << lobe.index());
@@ -73,8 +69,8 @@ pub unsafe extern "C" fn hairis_dual_init(
         return ARGUMENT;
     };
     // SAFETY: the material is initialised.
-    let draw = &mut unsafe { drawing(from) };
-    let measured = dual::DualScattering::measured(id.lobes().len(), draw);
+    let mut draw = unsafe { drawing(from) };
+    let measured = dual::DualScattering::measured(id.lobes().len(), &mut draw);
     // SAFETY: the caller's promise.
     unsafe { (*to).coefficients = measured.coefficients };
     OK
