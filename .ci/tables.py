@@ -293,7 +293,23 @@ def dual():
     return record, ["scene", "model", "colour", "red", "green", "blue", "once", "by pixel", "time, dual and paths"], rows
 
 
-TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "dual": dual, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "pictures": pictures, "refits": refits, "rtxcr": rtxcr, "speed": speed, "uphill": uphill}
+def color():
+    """Errors of asked colours, of one fibre and of a mass."""
+    record = Record("color.csv")
+    rows = [[row["model"], row["sense"], row["largest"], row["rms"], row["darkest"], row["lightest"]] for row in record.rows]
+    return record, ["model", "sense", "largest error", "rms", "darkest", "lightest"], rows
+
+
+def color_heads():
+    """Colours of heads less those that were asked."""
+    record = Record("color-heads.csv")
+    heads = {"env": "straight", "head": "wavy"}
+    rows = [[heads[row["scene"]], row["model"], row["sense"], *(f"{float(row[name]):.3f}" for name in ("rms", "largest")), f"{float(row['mean']):+.3f}"]
+            for row in record.rows]
+    return record, ["hair", "model", "sense", "rms", "largest error", "mean"], rows
+
+
+TABLES = {"capi": capi, "color": color, "color-heads": color_heads, "conserving": conserving, "cuda": cuda, "dual": dual, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "pictures": pictures, "refits": refits, "rtxcr": rtxcr, "speed": speed, "uphill": uphill}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 

@@ -77,10 +77,10 @@ impl Head {
     /// Renders the head with hair of these values. Returns the picture and the mean colour of the hair: of the pixels whose centre shows
     /// hair, without their background.
     fn shown(&mut self, id: ModelId, values: &hairis_variants::Values) -> (Picture, [f64; 3]) {
-        let mut choice = Choice::find("chiang", "published", "black").unwrap();
+        let mut choice = Choice::find("chiang", "published", "black").expect("listed");
         let best = ModelId::find(id.name(), Some("matched")).unwrap_or(id);
         (choice.id, choice.values) = (best, *values);
-        self.scene.hair = choice.hair(Energy::PerWo).unwrap();
+        self.scene.hair = choice.hair(Energy::PerWo).expect("in range");
         let picture = self.picture();
         let of = |value: &dyn Fn(usize) -> f64| -> f64 {
             let shown = self.shows.iter().enumerate().filter(|(_, shows)| **shows);
@@ -94,8 +94,12 @@ impl Head {
 
 /// Returns the values of a model that show a colour in a sense, from its material of brown hair.
 fn colored(id: ModelId, color: [f32; 3], of: ColorOf) -> hairis_variants::Values {
-    let (_, brown) = id.presets().find(|(name, _)| *name == "brown").unwrap();
-    id.with_color(&brown, color, of).unwrap()
+    let (_, brown) = id
+        .presets()
+        .find(|(name, _)| *name == "brown")
+        .expect("a preset");
+    id.with_color(&brown, color, of)
+        .expect("a model with a colour")
 }
 
 /// The mean of a small head is near the asked colour, which is far from that of a fibre.
@@ -112,6 +116,11 @@ fn a_head_shows_the_colour_that_is_asked_of_a_mass() {
 }
 
 /// Converts a linear channel to sRGB.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a share of 255"
+)]
 fn srgb(x: f64) -> u8 {
     let x = x.clamp(0.0, 1.0);
     let curve = if x < 0.003_130_8 {

@@ -43,7 +43,7 @@ use pyo3::prelude::*;
 /// 0.2
 /// >>> hair = hairis.Material("d-eon", roughness=0.3, color=(0.5, 0.3, 0.1), color_of="fibre")
 /// >>> [round(absorption, 2) for absorption in hair.fields["sigma_a"]]
-/// [0.4, 0.77, 2.08]
+/// [0.4, 0.73, 1.83]
 /// >>> hairis.Material("gaussian", beta=(0.1, 0.0, 0.2))
 /// Traceback (most recent call last):
 /// ValueError: beta[1] must be a width in [1e-4, pi] rad, got 0
