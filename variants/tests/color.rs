@@ -167,6 +167,17 @@ fn every_colour_is_the_nearest_or_an_error() {
     let dark = black_pigment.with("i_trt", &[0.0; 3]);
     let values = ModelId::Gaussian.with_color(&dark, [0.5; 3], ColorOf::Fibre);
     assert_eq!(values, Ok(dark), "R alone has one colour");
+    let bright = ModelId::Gaussian.defaults().with("i_tt", &[f32::MAX; 3]);
+    let values = ModelId::Gaussian.with_color(
+        &bright.with("i_trt", &[f32::MAX; 3]),
+        [0.5; 3],
+        ColorOf::Fibre,
+    );
+    let numbers: [f32; 3] = values.unwrap().get("i_tt");
+    assert!(
+        numbers.iter().all(|i| i.is_finite() && *i >= 0.0),
+        "{numbers:?}"
+    );
 }
 
 #[test]

@@ -55,6 +55,8 @@ pub(super) fn solve<E>(
         for c in 0..3 {
             if !done[c] {
                 let share = f32::quotient(above[c], (above[c] - below[c]).max(1e-30));
+                // Colours of numbers that overflow are none.
+                let share = if share.is_finite() { share } else { 0.5 };
                 at[c] = lo[c] + (hi[c] - lo[c]) * share;
             }
         }
