@@ -294,6 +294,22 @@ def dual():
     return record, ["scene", "model", "colour", "red", "green", "blue", "noise", "once", "by block", "time, dual and paths"], rows
 
 
+def color():
+    """Errors of asked colours, of one fibre and of a mass."""
+    record = Record("color.csv")
+    rows = [[row["model"], row["sense"], row["largest"], row["rms"], row["darkest"], row["lightest"]] for row in record.rows]
+    return record, ["model", "sense", "largest error", "rms", "darkest", "lightest"], rows
+
+
+def color_heads():
+    """Colours of heads less those that were asked."""
+    record = Record("color-heads.csv")
+    heads = {"env": "straight", "head": "wavy"}
+    rows = [[heads[row["scene"]], row["model"], row["sense"], *(f"{float(row[name]):.3f}" for name in ("rms", "largest")), f"{float(row['mean']):+.3f}"]
+            for row in record.rows]
+    return record, ["hair", "model", "sense", "rms", "largest error", "mean"], rows
+
+
 PHYSICS = ["gaussian", "cauchy", "kajiya-kay", "chiang", "d-eon"]
 
 
@@ -341,7 +357,7 @@ def physics_fibres():
     return record, ["fibre", "roughness", "tilt", "aspect", "absorption, RGB", "medulla: size, scattering, g"], body
 
 
-TABLES = {"capi": capi, "conserving": conserving, "cuda": cuda, "dual": dual, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "physics": physics, "physics-fibres": physics_fibres, "physics-lobes": physics_lobes, "pictures": pictures, "refits": refits, "rtxcr": rtxcr, "speed": speed, "uphill": uphill}
+TABLES = {"capi": capi, "color": color, "color-heads": color_heads, "conserving": conserving, "cuda": cuda, "dual": dual, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "physics": physics, "physics-fibres": physics_fibres, "physics-lobes": physics_lobes, "pictures": pictures, "refits": refits, "rtxcr": rtxcr, "speed": speed, "uphill": uphill}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 

@@ -11,7 +11,7 @@ mod measure;
 
 pub use crossed::Crossed;
 pub use local::Local;
-pub use measure::Draw;
+pub use measure::{Draw, albedo_and_forward};
 
 use crate::handle::Material;
 use crate::model::math::{atan2_upper, gaussian, half_atan2};

@@ -15,7 +15,7 @@ CALLS = (
     ("columns, weigh", r"Weighs|weigh_columns"),
     ("one direction", r"points::"),
     ("set-up, fit of the albedo", r"prepare8|prepare_integrated|albedo|Integrate<|kernels::Prepare<|conserving"),
-    ("set-up, parameters", r"setup::|models::|text::|artist::|from_values|registry|parameters|params::"),
+    ("set-up, parameters", r"setup::|color::|models::|text::|artist::|from_values|registry|parameters|params::"),
 )
 MODELS = (
     ("matched, 25 bands", r"Matched<[^>]*, 25>"),

@@ -28,6 +28,7 @@ compile_error!(
 
 mod cauchy;
 pub mod chiang;
+pub mod color;
 mod cone;
 pub mod d_eon;
 mod hair;

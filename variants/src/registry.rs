@@ -18,7 +18,7 @@ use {
     core::ops::{Deref, DerefMut},
     glam::Vec3,
     hairis::columns::SampleColumns,
-    hairis::dual_scattering::{Averages, DualScattering},
+    hairis::dual_scattering::{Averages, DualScattering, albedo_and_forward},
     hairis::model::{DynBsdf, DynBsdf8},
     hairis::simd::Level,
     hairis::{Bsdf, Bsdf8, Conserving, Hit, Hit8, Lobe, LobeMask, Material, Material8},
@@ -404,7 +404,14 @@ impl AnyMaterial {
         DualScattering::measured(self.model().lobes().len(), &mut self.draw())
     }
 
-    /// Returns the largest errors of these averages: see [`DualScattering::errors`].
+    /// Measures the albedo at an inclination of the light, rad, and its share that goes straight on: see [`albedo_and_forward`].
+    #[inline]
+    #[must_use]
+    pub fn albedo_and_forward(&self, theta: f32) -> [[f32; 3]; 2] {
+        albedo_and_forward(theta, self.model().lobes().len(), &mut self.draw())
+    }
+
+    /// Returns the largest errors of the polynomials: see [`DualScattering::errors`].
     #[inline]
     #[must_use]
     pub fn dual_scattering_errors(&self, dual: &DualScattering<f32>) -> Averages<f32> {

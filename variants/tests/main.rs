@@ -15,6 +15,8 @@ mod accuracy;
 mod cauchy;
 #[cfg(any(not(hairis_one), hairis_one = "chiang"))]
 mod chiang;
+#[cfg(not(hairis_one))]
+mod color;
 #[cfg(any(not(hairis_one), hairis_one = "d-eon"))]
 mod d_eon;
 #[cfg(not(hairis_one))]

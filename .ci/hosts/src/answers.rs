@@ -2,10 +2,11 @@
 
 use glam::Vec3;
 use hairis::columns::{EvalColumns, HitColumns, SampleColumns};
-use hairis::dual_scattering::{Crossed, DualScattering, GAIN};
+use hairis::dual_scattering::{Crossed, DualScattering, GAIN, albedo_and_forward};
 use hairis::model::Model;
 use hairis::resample::{CandidateColumns, Counts, Partition, WeightColumns, choose};
 use hairis::{Bsdf, Conserving, FiberFrame, Gaussian, Hit, Lobe, LobeMask, Material, Published};
+use hairis_variants::color::{ColorOf, with_color};
 use hairis_variants::{ModelId, Parameters, Registered, Values, Visitor};
 
 /// Lengths of columns at one hit: less than a packet, one, pairs of the widest packets, and more than a chunk.
@@ -439,6 +440,42 @@ fn dual(to: &mut Stream) {
     }
 }
 
+/// What a material scatters at an inclination.
+struct Scattered<'a>(&'a Values, f32);
+
+impl Visitor for Scattered<'_> {
+    type Output = [[f32; 3]; 2];
+
+    fn visit<M: Registered>(self) -> Self::Output {
+        let params = M::Params::from_values(self.0).expect("values in range");
+        let material = Material::new(&Conserving(M::MODEL), &params);
+        albedo_and_forward(self.1, M::LOBES.len(), &mut |hit, lobe, xi, out| {
+            let bsdf = material.prepare(hit).with_lobes(LobeMask::of(&[lobe]));
+            bsdf.sample_columns(xi, out).expect("columns of one length");
+        })
+    }
+}
+
+/// Parameters of two materials that have a colour.
+fn colors(to: &mut Stream) {
+    for name in ["gaussian", "d-eon"] {
+        let id = ModelId::find(name, None).expect("a model of the list");
+        let color = [to.uniform(), to.uniform(), to.uniform()];
+        to.text(name);
+        to.floats(&color);
+        let measure =
+            &mut |id: ModelId, values: &Values, theta| Ok(id.visit(Scattered(values, theta)));
+        let colored = with_color(id, &id.defaults(), color, ColorOf::Fibre, measure);
+        let values = colored.expect("a model with a colour");
+        let mut numbers = Vec::new();
+        for index in 0..values.fields().len() {
+            numbers.extend(values.numbers_at(index));
+        }
+        numbers.resize(Values::MOST, 0.0);
+        to.floats(&numbers);
+    }
+}
+
 /// The whole stream.
 pub fn all() -> Vec<u8> {
     let mut to = Stream {
@@ -454,5 +491,6 @@ pub fn all() -> Vec<u8> {
     }
     table(&mut to);
     dual(&mut to);
+    colors(&mut to);
     to.bytes
 }

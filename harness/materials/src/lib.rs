@@ -4,6 +4,7 @@
 //! - [`files`]: materials of files, each with a unique name.
 //! - [`json`]: JSON values, and refusals that name the field at fault.
 
+mod color;
 pub mod files;
 pub mod json;
 pub mod material;

@@ -1,5 +1,6 @@
 //! Models of the registry with their parameters, as programs read them from JSON.
 
+use crate::color;
 use crate::json::{Json, join, number, numbers, refusal, word};
 use hairis::ParamError;
 use hairis_variants::chiang::Likeness;
@@ -12,7 +13,7 @@ use hairis_variants::AnyMaterial;
 use hairis_variants::{Registered, Visitor};
 
 /// Fields of a JSON object, by name.
-type Fields = BTreeMap<String, Json>;
+pub(crate) type Fields = BTreeMap<String, Json>;
 
 /// Model of which other renderers have parameters of their own: see [`Likeness`].
 const LIKE: &str = "chiang";
@@ -121,10 +122,14 @@ impl MaterialSpec {
         let choice = first.choice().map(|(field, _)| field);
         let h = first.is_near_field().then_some("h");
         let like = (first.name() == LIKE).then_some("like");
+        // A colour takes measurements of the kernels.
+        let is_colored = cfg!(feature = "any") && first.name() != "kajiya-kay";
+        let color = is_colored.then_some(["color", "color_of"]);
         ["model"]
             .into_iter()
             .chain(choice)
             .chain(like)
+            .chain(color.into_iter().flatten())
             .chain(["params"])
             .chain(h)
             .chain(["wo", "wi", "xi"])
@@ -151,7 +156,14 @@ impl MaterialSpec {
             model = ModelId::find(first.name(), Some(words[word(field, json, &words)?]))
                 .unwrap_or(first);
         }
+        let color = color::read(object)?;
         if let Some(like) = object.get("like") {
+            if color.is_some() {
+                return Err(refusal(
+                    "color",
+                    "given together with like; give one of them",
+                ));
+            }
             let params = Self::like(model, like, given("params")?.clone())?;
             let is_chosen = choice.is_some();
             return Ok(Self {
@@ -161,17 +173,34 @@ impl MaterialSpec {
         }
         let fields = model.fields();
         let params = given("params")?.clone();
-        let params = params.fields("params", &names_of(fields))?;
+        let mut params = params.fields("params", &names_of(fields))?;
+        let absorption = fields.iter().filter(|field| head(field) == "sigma_a");
+        for field in absorption.filter(|_| color.is_some()) {
+            if params.contains_key(field.name) {
+                let problem = format!(
+                    "given together with params.{}; give one of them",
+                    field.name
+                );
+                return Err(refusal("color", problem));
+            }
+            if field.name == "sigma_a" {
+                params.insert("sigma_a".to_owned(), Json::parse("[0, 0, 0]")?);
+            }
+        }
         check_present(fields, &params)?;
         let (values, exact) = (model.defaults(), exact_defaults(model));
         let (values, exact) = replaced("params", values, exact, &params)?;
         let rounded =
             Self::new(model, values).map_err(|error| refused("params", fields, &error, &exact))?;
-        Ok(Self {
+        let read = Self {
             is_chosen: choice.is_some(),
             exact,
             ..rounded
-        })
+        };
+        match color {
+            Some(color) => read.colored(color),
+            None => Ok(read),
+        }
     }
 
     /// Reads the parameters of another renderer, whose name is `like`. They are converted in single precision.

@@ -1,7 +1,8 @@
 //! Parameters of materials: words, fields that may be missing, and fields of which one is given.
 
 use hairis_materials::MaterialSpec;
-use hairis_variants::{ChiangParams, KajiyaKayParams, Parameters};
+use hairis_variants::color::ColorOf;
+use hairis_variants::{ChiangParams, KajiyaKayParams, ModelId, Parameters};
 
 /// Reads a material of these parameters, and returns them or the refusal.
 fn params<P: Parameters>(model: &str, text: &str) -> Result<P, String> {
@@ -175,5 +176,64 @@ fn like_another_renderer() {
             Err(problem.to_owned()),
             "{like} {params}"
         );
+    }
+}
+
+/// Colours by the subject that shows them.
+#[test]
+fn a_colour_decides_the_absorption() {
+    let read = |model: &str, color: &str, params: &str| {
+        let text = format!(r#"{{"model":"{model}",{color},"params":{params}}}"#);
+        MaterialSpec::parse_all(&text).map(|all| all[0])
+    };
+    let fibre = r#""color":[0.5,0.3,0.1],"color_of":"fibre""#;
+    let material = read("d-eon", fibre, r#"{"roughness":0.3}"#).expect("legal");
+    let shown = ModelId::DEon.shown_color(&material.values, ColorOf::Fibre);
+    let shown = shown.expect("a colour");
+    assert!((shown[0] - 0.5).abs() < 1e-5 && (shown[2] - 0.1).abs() < 1e-5);
+    let [exact]: [f64; 1] = [material.exact.numbers("sigma_a")[0]];
+    assert_eq!(exact, f64::from(material.values.numbers("sigma_a")[0]));
+    let rough = r#"{"beta_m":0.3,"beta_n":0.3}"#;
+    for (model, color, params, problem) in [
+        (
+            "d-eon",
+            r#""color":[1,1,1]"#,
+            r#"{"roughness":0.3}"#,
+            "color_of: missing",
+        ),
+        (
+            "d-eon",
+            r#""color_of":"mass""#,
+            r#"{"roughness":0.3}"#,
+            "color: missing",
+        ),
+        (
+            "chiang",
+            r#""color":[1,1,1],"color_of":"head""#,
+            rough,
+            r#"color_of: must be "chiang" or "fibre" or "mass", got "head""#,
+        ),
+        (
+            "chiang",
+            r#""color":[1,-1,1],"color_of":"mass""#,
+            rough,
+            "color[1]: must be finite and at least 0, got -1",
+        ),
+        (
+            "d-eon",
+            fibre,
+            r#"{"roughness":0.3,"melanin":[1,0]}"#,
+            "color: given together with params.melanin; give one of them",
+        ),
+        (
+            "d-eon",
+            r#""color":[1,1,1],"color_of":"chiang""#,
+            r#"{"roughness":0.3}"#,
+            r#"color_of: must be a sense that d-eon has, got "chiang""#,
+        ),
+        ("kajiya-kay", fibre, "{}", "color: unknown"),
+    ] {
+        let refused = read(model, color, params).expect_err(model);
+        assert!(refused.starts_with(problem), "{refused} for {problem}");
     }
 }

@@ -4,6 +4,7 @@ mod agreement;
 mod bits;
 mod camera;
 mod cli;
+mod color;
 mod dual;
 mod figures;
 mod film;

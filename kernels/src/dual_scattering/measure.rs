@@ -2,7 +2,7 @@
 
 use super::{QUANTITIES, TERMS};
 use crate::columns::SampleColumns;
-use crate::model::{Hit, Lobe};
+use crate::model::{Hit, Lobe, Precision};
 use crate::simd::Lanes;
 use core::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, PI};
 use glam::Vec3;
@@ -55,13 +55,17 @@ impl Sums {
     }
 }
 
-/// Measures the averages at an inclination of the light, rad, in the order of [`Averages`](super::Averages).
+/// Draws samples of every lobe at an inclination of the light, rad, and over the fibre's width. Calls `visit` with their directions and with
+/// their weights, which sum to the albedo.
 ///
 /// Each lobe is drawn alone, because its weights are smooth functions of the numbers and those of a mixture are not.
-pub(super) fn measure(theta: f32, lobes: usize, draw: &mut Draw<'_>) -> [[f32; 3]; QUANTITIES] {
+fn each_sample(
+    theta: f32,
+    lobes: usize,
+    draw: &mut Draw<'_>,
+    visit: &mut dyn FnMut([f32; 3], [f32; 3]),
+) {
     let wo = Vec3::new(libm::sinf(theta), libm::cosf(theta), 0.0);
-    let mut sides = [[Sums::default(); 3]; 2];
-    let mut azimuth = [[0.0_f32; 3]; 2];
     let shares = (0..OFFSETS).map(|offset| around(offset).1).sum::<f32>();
     let shares = f32::quotient(1.0, shares * POINTS as f32);
     let each = |offset| {
@@ -96,24 +100,31 @@ pub(super) fn measure(theta: f32, lobes: usize, draw: &mut Draw<'_>) -> [[f32; 3
         draw(hit, lobe, xi.each_ref().map(|column| &column[..]), out);
         for point in 0..POINTS {
             // Discarded samples have no weight, and may have no direction.
-            if weight.iter().all(|column| column[point] <= 0.0) {
-                continue;
-            }
-            let [x, y, z] = wi.map(|column| column[point]);
-            let across = libm::sqrtf(y * y + z * z);
-            let angle = libm::atan2f(x, across) + theta;
-            let phi = libm::fabsf(libm::atan2f(z, y));
-            let (forward, cos) = (phi * FRAC_1_PI, libm::cosf(phi));
-            let triple = cos * (4.0 * cos * cos - 3.0);
-            for c in 0..3 {
-                let weight = weight[c][point] * share;
-                sides[0][c].add(weight * forward, angle);
-                sides[1][c].add(weight * (1.0 - forward), angle);
-                azimuth[0][c] += weight * cos;
-                azimuth[1][c] += weight * triple;
+            if weight.iter().any(|column| column[point] > 0.0) {
+                let weight = weight.map(|column| column[point] * share);
+                visit(wi.map(|column| column[point]), weight);
             }
         }
     }
+}
+
+/// Measures the averages at an inclination of the light, rad, in the order of [`Averages`](super::Averages).
+pub(super) fn measure(theta: f32, lobes: usize, draw: &mut Draw<'_>) -> [[f32; 3]; QUANTITIES] {
+    let mut sides = [[Sums::default(); 3]; 2];
+    let mut azimuth = [[0.0_f32; 3]; 2];
+    each_sample(theta, lobes, draw, &mut |[x, y, z], weight| {
+        let across = libm::sqrtf(y * y + z * z);
+        let angle = libm::atan2f(x, across) + theta;
+        let phi = libm::fabsf(libm::atan2f(z, y));
+        let (forward, cos) = (phi * FRAC_1_PI, libm::cosf(phi));
+        let triple = cos * (4.0 * cos * cos - 3.0);
+        for c in 0..3 {
+            sides[0][c].add(weight[c] * forward, angle);
+            sides[1][c].add(weight[c] * (1.0 - forward), angle);
+            azimuth[0][c] += weight[c] * cos;
+            azimuth[1][c] += weight[c] * triple;
+        }
+    });
     let mut out = [[0.0; 3]; QUANTITIES];
     [out[6], out[7]] = azimuth;
     for c in 0..3 {
@@ -129,6 +140,28 @@ pub(super) fn measure(theta: f32, lobes: usize, draw: &mut Draw<'_>) -> [[f32; 3
         }
     }
     out
+}
+
+/// Measures the albedo of a material at an inclination of the light, rad, and its share that goes straight on: means over the fibre's width,
+/// linear RGB.
+///
+/// The share is the mean of the albedo times the cosine of the azimuth by which light turns: 1 for light that goes on, and -1 for light that
+/// comes back. Takes a quarter of a millisecond. `draw` is that of [`DualScattering::measured`](super::DualScattering::measured).
+#[must_use]
+#[inline(never)]
+pub fn albedo_and_forward(theta: f32, lobes: usize, draw: &mut Draw<'_>) -> [[f32; 3]; 2] {
+    // In double precision: inversion stalls on the roundings of twenty thousand sums.
+    let mut sums = [[0.0_f64; 3]; 2];
+    each_sample(theta, lobes, draw, &mut |[_, y, z], weight| {
+        let across = libm::sqrtf(y * y + z * z).max(1e-12);
+        // The azimuth of directions, which is half a turn for light that goes on.
+        let forward = -f32::quotient(y, across);
+        for c in 0..3 {
+            sums[0][c] += f64::from(weight[c]);
+            sums[1][c] += f64::from(weight[c] * forward);
+        }
+    });
+    sums.map(|sum| sum.map(f64::rounded))
 }
 
 /// Returns the angle about the fibre of an offset, whose sine it is, and its share. Angles are denser towards the edges, so that their sum

@@ -178,6 +178,11 @@ hairis_status hairis_params_set_word(hairis_params *params, const char *field, c
  * "mitsuba". hairis_params_set and hairis_params_set_word then take that renderer's names, which hairis_field_describe lists for the
  * index in to->model. hairis_material_init converts, and refuses what is outside the range of either. */
 hairis_status hairis_params_like(hairis_params *to, const char *renderer, hairis_error *error);
+/* Sets the absorption of chiang or d-eon, or the intensities of TT and TRT of gaussian or cauchy, with which hair shows a colour, linear
+ * RGB. of is "mass" (hair of a head), "fibre" (one fibre from its side), both under uniform light, or "chiang" (the published fit of
+ * chiang). A colour that such hair cannot show becomes the nearest that it can. Set widths before. Another renderer's parameters become
+ * those of chiang. Takes a tenth of a second for a mass. */
+hairis_status hairis_params_set_color(hairis_params *params, const float color[3], const char *of, hairis_error *error);
 void hairis_artist_init(hairis_artist *to);
 hairis_status hairis_params_set_artist(hairis_params *params, const hairis_artist *from, hairis_error *error);
 

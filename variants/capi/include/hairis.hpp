@@ -144,6 +144,11 @@ class Params {
     detail::report(error, [&](hairis_error *to) { hairis_params_set_artist(&params_, &controls, to); });
     return *this;
   }
+  /// Sets what decides the colour of the hair: see hairis_params_set_color.
+  Params &set_color(const float (&color)[3], const char *of, hairis_error &error) noexcept {
+    detail::report(error, [&](hairis_error *to) { hairis_params_set_color(&params_, color, of, to); });
+    return *this;
+  }
 #if HAIRIS_THROWS
   explicit Params(const char *model, const char *choice = nullptr, const char *preset = nullptr) {
     detail::check([&](hairis_error &error) { *this = Params(model, choice, preset, error); });
@@ -167,6 +172,10 @@ class Params {
   }
   Params &set(const hairis_artist &controls) {
     detail::check([&](hairis_error &error) { set(controls, error); });
+    return *this;
+  }
+  Params &set_color(const float (&color)[3], const char *of) {
+    detail::check([&](hairis_error &error) { set_color(color, of, error); });
     return *this;
   }
   Model model() const { return Model::at(params_.model); }

@@ -6,27 +6,21 @@ use crate::layout::{ARGUMENT, Crossed, DualScattering, OK, RawBsdf, RawMaterial,
 use crate::points::{hairis_albedo, hairis_prepare, hairis_restrict};
 use core::mem::MaybeUninit;
 use core::ptr;
-use hairis::Lobe;
+use hairis::columns::SampleColumns;
 use hairis::dual_scattering as dual;
 use hairis::simd::Vec3x;
+use hairis::{Hit, Lobe};
 
-/// Implements `hairis_dual_init`: measures the averages of a material.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hairis_dual_init(
-    to: *mut DualScattering,
+/// Returns a function that draws samples of one lobe of a material at a hit, by the calls of the interface, which are compiled for every model
+/// already. A lobe that scatters nothing is not sampled alone, because it has no share to divide by.
+///
+/// # Safety
+///
+/// The material must be initialised, and live as long as the function.
+pub(crate) unsafe fn drawing(
     from: *const RawMaterial,
-) -> i32 {
-    if to.is_null() || from.is_null() {
-        return ARGUMENT;
-    }
-    // SAFETY: the caller's promise.
-    let Some(id) = (unsafe { model_of(from) }) else {
-        return ARGUMENT;
-    };
-    // By the calls of the interface, which are compiled for every model already. A lobe that scatters nothing is not sampled alone, because
-    // it has no share to divide by.
-    let mut is_dark = [None; Lobe::COUNT];
-    let measured = dual::DualScattering::measured(id.lobes().len(), &mut |hit, lobe, xi, out| {
+) -> impl Fn(Hit, Lobe, [&[f32]; 3], SampleColumns<'_>) {
+    move |hit, lobe, xi, out| {
         let mut bsdf = MaybeUninit::<RawBsdf>::zeroed();
         let columns = |vector: Option<[&mut [f32]; 3]>| {
             vector.map_or([ptr::null_mut(); 3], |columns| {
@@ -45,12 +39,9 @@ pub unsafe extern "C" fn hairis_dual_init(
         // SAFETY: the material is initialised, the BSDF is written before it is read, and columns have one length.
         unsafe {
             hairis_prepare(bsdf.as_mut_ptr(), from, wo.x, wo.y, wo.z, hit.h);
-            let is_dark = *is_dark[lobe.index()].get_or_insert_with(|| {
-                let mut albedo = [[0.0; 3]; Lobe::COUNT];
-                hairis_albedo(bsdf.as_ptr(), &raw mut albedo);
-                albedo[lobe.index()].into_iter().all(|share| share <= 0.0)
-            });
-            if is_dark {
+            let mut albedo = [[0.0; 3]; Lobe::COUNT];
+            hairis_albedo(bsdf.as_ptr(), &raw mut albedo);
+            if albedo[lobe.index()].into_iter().all(|share| share <= 0.0) {
                 return;
             }
             hairis_restrict(bsdf.as_mut_ptr(), 1 << lobe.index());
@@ -61,7 +52,25 @@ pub unsafe extern "C" fn hairis_dual_init(
                 &samples,
             );
         }
-    });
+    }
+}
+
+/// Implements `hairis_dual_init`: measures the averages of a material.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hairis_dual_init(
+    to: *mut DualScattering,
+    from: *const RawMaterial,
+) -> i32 {
+    if to.is_null() || from.is_null() {
+        return ARGUMENT;
+    }
+    // SAFETY: the caller's promise.
+    let Some(id) = (unsafe { model_of(from) }) else {
+        return ARGUMENT;
+    };
+    // SAFETY: the material is initialised.
+    let mut draw = unsafe { drawing(from) };
+    let measured = dual::DualScattering::measured(id.lobes().len(), &mut draw);
     // SAFETY: the caller's promise.
     unsafe { (*to).coefficients = measured.coefficients };
     OK

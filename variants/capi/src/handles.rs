@@ -2,11 +2,13 @@
 //! conserve energy, although they change nothing in a raw material, because a second type would double the code. Only calls on hits
 //! leave them out. A handle whose tag is 0 is empty, and scatters nothing in any call.
 
-use crate::layout::{BSDF_SIZE, HEAD_SIZE, MATERIAL_SIZE, RawBsdf, RawMaterial};
-use crate::models::tagged;
+use crate::layout::{
+    BSDF_SIZE, ENERGY_CONSERVING, ENERGY_SCALED, HEAD_SIZE, MATERIAL_SIZE, RawBsdf, RawMaterial,
+};
+use crate::models::{self, tagged, visit};
 use core::mem::MaybeUninit;
-use hairis::{Bsdf, Conserving, Material};
-use hairis_variants::{ModelId, Registered};
+use hairis::{Bsdf, Conserving, Material, ParamError};
+use hairis_variants::{ModelId, Parameters, Registered, Values};
 
 /// Asserts that the sizes in the header hold the handles of `M`. Every function that writes handles calls this, for every model.
 pub(crate) const fn assert_fits<M: Registered>() {
@@ -81,4 +83,48 @@ pub(crate) unsafe fn place<'a, M: Registered>(
     assert_fits::<M>();
     // SAFETY: the host's memory, large enough and aligned.
     unsafe { &mut *(&raw mut (*raw).body).cast() }
+}
+
+/// Makes a material from values. This is the only place that reads the energy which the host asks for.
+fn build<M: Registered>(
+    values: &Values,
+    energy: u32,
+) -> Result<Material<Conserving<M>>, ParamError> {
+    let params: M::Params = Parameters::from_values(values)?;
+    let raw = |params| Material::<Conserving<M>>::from(Material::new(&M::MODEL, params));
+    match energy {
+        ENERGY_CONSERVING => Ok(Material::new(&Conserving(M::MODEL), &params)),
+        ENERGY_SCALED => {
+            let scale = raw(&params).conserving_scale();
+            Ok(raw(&params.scaled(scale)?))
+        }
+        _ => Ok(raw(&params)),
+    }
+}
+
+/// Writes the material of these values.
+///
+/// # Safety
+///
+/// `to` must be aligned memory for a material.
+pub(crate) unsafe fn init(
+    to: *mut RawMaterial,
+    id: ModelId,
+    values: &Values,
+    energy: u32,
+) -> Result<(), ParamError> {
+    let values = &raw const *values;
+    visit!(id, M, (to: *mut RawMaterial, values: *const Values, energy: u32) -> Result<(), ParamError>, {
+        assert_fits::<M>();
+        // SAFETY: the values outlive the call.
+        let material = build::<M>(unsafe { &*values }, energy)?;
+        // SAFETY: the caller's promise; the handle fits.
+        unsafe {
+            to.write_bytes(0, 1);
+            let is_raw = u32::from(energy != ENERGY_CONSERVING);
+            (&raw mut (*to).head).write([models::tag(ModelId::of::<M>()), is_raw, 0, 0]);
+            (&raw mut (*to).body).cast::<Material<Conserving<M>>>().write(material);
+        }
+        Ok(())
+    })
 }

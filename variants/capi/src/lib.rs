@@ -11,6 +11,7 @@
 )]
 
 pub mod artist;
+pub mod color;
 pub mod columns;
 pub mod dual;
 mod handles;

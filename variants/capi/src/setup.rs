@@ -1,6 +1,6 @@
 //! Calls of set-up, which report errors in a sentence: models by name, parameters by field, and materials.
 
-use crate::handles::{assert_fits, material, model_of};
+use crate::handles::{init, material, model_of};
 use crate::layout::{
     ABI_VERSION, ARGUMENT, ENERGY_CONSERVING, ENERGY_RAW, ENERGY_SCALED, Error, FieldInfo,
     KIND_NUMBER, KIND_NUMBERS, KIND_RGB, KIND_WORD, ModelInfo, NAME, NUMBERS, OK, Params,
@@ -9,10 +9,10 @@ use crate::layout::{
 use crate::models::{self, Subject, visit};
 use crate::text::{Fault, List, array, copy, refuse, string};
 use core::ffi::c_char;
+use hairis::ParamError;
 use hairis::simd::Level;
-use hairis::{Conserving, Material, ParamError};
 use hairis_variants::chiang::{Chiang, Likeness};
-use hairis_variants::{FieldError, Kind, ModelId, Parameters, Registered, Values};
+use hairis_variants::{FieldError, Kind, ModelId, Values};
 
 const _: () = assert!(
     NUMBERS == Values::MOST,
@@ -414,23 +414,6 @@ pub(crate) unsafe fn refuse_value(error: *mut Error, fault: &ParamError) -> i32 
     unsafe { refuse(error, VALUE, &place, fault) }
 }
 
-/// Makes a material from values. This is the only place that reads the energy which the host asks for.
-fn build<M: Registered>(
-    values: &Values,
-    energy: u32,
-) -> Result<Material<Conserving<M>>, ParamError> {
-    let params: M::Params = Parameters::from_values(values)?;
-    let raw = |params| Material::<Conserving<M>>::from(Material::new(&M::MODEL, params));
-    match energy {
-        ENERGY_CONSERVING => Ok(Material::new(&Conserving(M::MODEL), &params)),
-        ENERGY_SCALED => {
-            let scale = raw(&params).conserving_scale();
-            Ok(raw(&params.scaled(scale)?))
-        }
-        _ => Ok(raw(&params)),
-    }
-}
-
 /// Implements `hairis_material_init`: makes a material from parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hairis_material_init(
@@ -455,21 +438,8 @@ pub unsafe extern "C" fn hairis_material_init(
         // SAFETY: the caller's promise.
         return unsafe { refuse(error, ARGUMENT, &Fault::of("to"), message) };
     }
-    let values = &raw const values;
-    let made = visit!(id, M, (to: *mut RawMaterial, values: *const Values, energy: u32) -> Result<(), ParamError>, {
-        assert_fits::<M>();
-        // SAFETY: the values outlive the call.
-        let material = build::<M>(unsafe { &*values }, energy)?;
-        // SAFETY: the caller's promise; the handle fits.
-        unsafe {
-            to.write_bytes(0, 1);
-            let is_raw = u32::from(energy != ENERGY_CONSERVING);
-            (&raw mut (*to).head).write([models::tag(ModelId::of::<M>()), is_raw, 0, 0]);
-            (&raw mut (*to).body).cast::<Material<Conserving<M>>>().write(material);
-        }
-        Ok(())
-    });
-    match made {
+    // SAFETY: the caller's promise.
+    match unsafe { init(to, id, &values, energy) } {
         // SAFETY: the caller's promise.
         Err(fault) => unsafe { refuse_value(error, &fault) },
         Ok(()) => OK,

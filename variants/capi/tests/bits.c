@@ -309,6 +309,19 @@ static void dual(void) {
   }
 }
 
+/* Parameters of two materials that have a colour. */
+static void colors(void) {
+  for (int round = 0; round < 2; ++round) {
+    hairis_params params;
+    const char *model = take(32);
+    float color[3];
+    memcpy(color, take(sizeof color), sizeof color);
+    if (hairis_params_init(&params, model, NULL, NULL, NULL) || hairis_params_set_color(&params, color, "fibre", NULL)) fail("a colour");
+    snprintf(place, sizeof place, "colour of %s", model);
+    same(params.numbers, sizeof params.numbers, "hairis_params_set_color");
+  }
+}
+
 int main(int count, char **arguments) {
   FILE *file = count == 2 || count == 3 ? fopen(arguments[1], "rb") : NULL;
   if (!file || fseek(file, 0, SEEK_END)) return fprintf(stderr, "usage: bits ANSWERS [short]\n"), 2;
@@ -355,6 +368,7 @@ int main(int count, char **arguments) {
   }
   table();
   dual();
+  colors();
   if (at != end) fail("the file of answers is longer");
   free(bytes);
   char level[32];

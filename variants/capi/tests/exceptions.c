@@ -18,9 +18,9 @@ enum { HITS = 400, WIDTH = 21 };
 static const char *const call_names[] = {"material_init", "max_albedo", "frame", "offset", "prepare", "restrict", "albedo",
                                          "eval_pdf", "lobes", "sample", "eval_columns", "sample_columns", "eval_hits",
                                          "sample_hits", "weigh_columns", "choose", "dual_init", "dual_strands", "dual_depth", "dual_through",
-                                         "dual_shade", "control"};
+                                         "dual_shade", "params_set_color", "control"};
 enum { INIT, MAX_ALBEDO, FRAME, OFFSET, PREPARE, RESTRICT, ALBEDO, EVAL, LOBES, SAMPLE, EVAL_COLUMNS, SAMPLE_COLUMNS, EVAL_HITS,
-       SAMPLE_HITS, WEIGH, CHOOSE, DUAL_INIT, DUAL_STRANDS, DUAL_DEPTH, DUAL_THROUGH, DUAL_SHADE, CONTROL, CALLS };
+       SAMPLE_HITS, WEIGH, CHOOSE, DUAL_INIT, DUAL_STRANDS, DUAL_DEPTH, DUAL_THROUGH, DUAL_SHADE, SET_COLOR, CONTROL, CALLS };
 static unsigned long made[CALLS], raising[CALLS];
 static int flags_of[CALLS], traps;
 
@@ -122,6 +122,17 @@ static void dual_scattering(const hairis_material *hair) {
   if (refused || !(total < INFINITY)) puts("FAIL a result of dual scattering is not finite"), exit(1);
 }
 
+/* Parameters that show colours, of which the first two are out of reach. A model without a colour is refused. */
+static void colors(hairis_params params) {
+  static const float asked[3][3] = {{0, 0, 0}, {1, 2, 1e30f}, {0.6f, 0.3f, 0.1f}};
+  for (int of = 0; of < 3; ++of)
+    for (int i = 0; i < 3; ++i) {
+      hairis_status refused;
+      CALL(SET_COLOR, refused = hairis_params_set_color(&params, asked[i], of == 0 ? "fibre" : of == 1 ? "mass" : "chiang", NULL));
+      if (refused && refused != HAIRIS_NAME && refused != HAIRIS_VALUE) puts("FAIL a colour is refused"), exit(1);
+    }
+}
+
 int main(int count, char **arguments) {
   int bad = 0;
   traps = count > 1 && !strcmp(arguments[1], "trap");
@@ -137,6 +148,7 @@ int main(int count, char **arguments) {
         hairis_material hair;
         hairis_preset_name(model, preset, name, sizeof name);
         if (hairis_params_init(&params, info.name, info.choice[0] ? info.word : NULL, name, NULL)) return 2;
+        if (preset == 0 && energy == 0) colors(params);
         hairis_status refused;
         CALL(INIT, refused = hairis_material_init(&hair, &params, energy, NULL));
         float most = 0;

@@ -83,6 +83,15 @@ static void setup(void) {
           "renderer must be one of cycles, materialx, osl, pbrt, mitsuba, and to not NULL; got \"blender\"");
   refused(hairis_params_like(NULL, "cycles", &error), HAIRIS_NAME, "renderer", -1, "not NULL; got \"cycles\"");
   want(memcmp(&params, &before, sizeof params) == 0, "parameters change where a renderer is refused");
+  const float color[3] = {0.5f, -1, 0.2f};
+  refused(hairis_params_set_color(&params, color, "mass", &error), HAIRIS_VALUE, "color", 1, "color[1] must be finite and at least 0, got -1");
+  refused(hairis_params_set_color(&params, NULL, "mass", &error), HAIRIS_ARGUMENT, "color", -1, "color must not be NULL");
+  refused(hairis_params_set_color(&params, color, "head", &error), HAIRIS_NAME, "color_of", -1,
+          "color_of must be one of chiang, fibre, mass, got \"head\"");
+  refused(hairis_params_set_color(&params, color, "chiang", &error), HAIRIS_NAME, "color_of", -1,
+          "color_of must be a sense that gaussian has, got \"chiang\"");
+  refused(hairis_params_set_color(NULL, color, NULL, &error), HAIRIS_ARGUMENT, "params", -1, "hairis_params_init");
+  want(memcmp(&params, &before, sizeof params) == 0, "parameters change where a colour is refused");
   if (hairis_params_like(&params, "cycles", &error)) want(0, "parameters of Cycles");
   refused(hairis_params_set(&params, "beta_m", numbers, 1, &error), HAIRIS_NAME, "beta_m", -1, "field must be one of roughness, ");
   const float rough = 1.5f, degrees = 2, melanin[1] = {1.3f}, tilt = -2 * 3.14159265358979f / 180, third = 0.3f;

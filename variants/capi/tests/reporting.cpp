@@ -42,6 +42,9 @@ int main() {
   want(error.code == HAIRIS_OK && like.prepare({0.6f, 0.8f, 0}).eval_pdf({0, 1, 0}).pdf > 0, "another renderer's parameters");
   want(cycles.model(error).fields.at(0).name == std::string("roughness"), "its fields");
 
+  cycles.set_color({0.5f, 0.3f, 0.2f}, "fibre", error);
+  want(error.code == HAIRIS_OK && cycles.model(error).fields.at(0).name == std::string("beta_m"), "a colour, of chiang's own parameters");
+
   // The first error stays, whatever follows.
   hairis::Params unknown("hair", nullptr, nullptr, error);
   want(says(error, HAIRIS_NAME, "model", "got \"hair\""), "a model that there is not");

@@ -20,6 +20,9 @@ use pyo3::prelude::*;
 ///     model is darker but stays reciprocal.
 /// like : {"cycles", "materialx", "osl", "pbrt", "mitsuba"}, optional
 ///     Renderer whose names and defaults the fields of "chiang" have; the material has our fields.
+/// color_of : {"mass", "fibre", "chiang"}, optional
+///     Subject that shows the field `color`, linear RGB, under uniform light: a head of such hair, one fibre from its side, or a mass by the
+///     published fit of "chiang". It decides the absorption, or the intensities of TT and TRT; a colour out of reach becomes the nearest.
 /// **fields
 ///     Values in place of the preset's values: numbers, sequences of numbers, or words. Angles are in radians, colours in linear RGB.
 ///     The field "sampler" of "gaussian" and "cauchy" and the field "select" of "chiang" choose how directions are sampled.
@@ -38,6 +41,9 @@ use pyo3::prelude::*;
 /// True
 /// >>> hairis.Material("chiang", like="cycles", roughness=0.2, coat=0.5).fields["beta_m"]
 /// 0.2
+/// >>> hair = hairis.Material("d-eon", roughness=0.3, color=(0.5, 0.3, 0.1), color_of="fibre")
+/// >>> [round(absorption, 2) for absorption in hair.fields["sigma_a"]]
+/// [0.4, 0.73, 1.83]
 /// >>> hairis.Material("gaussian", beta=(0.1, 0.0, 0.2))
 /// Traceback (most recent call last):
 /// ValueError: beta[1] must be a width in [1e-4, pi] rad, got 0

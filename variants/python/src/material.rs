@@ -8,7 +8,9 @@ use crate::hair::Material;
 use crate::hits::{all, call, inputs};
 use crate::shapes::{EVAL, PDF, SAMPLE, any_shape, one, pair};
 use crate::text;
-use crate::values::{CONSERVING, energy_of, number, params_like, params_of, vector, word};
+use crate::values::{
+    CONSERVING, energy_of, number, params_like, params_of, set_color, take_color, vector, word,
+};
 use hairis_capi::{hits, setup};
 use hairis_materials::MaterialSpec;
 use pyo3::exceptions::PyValueError;
@@ -29,22 +31,27 @@ fn offset_of(value: &Bound<'_, PyAny>) -> PyResult<f32> {
 impl Material {
     #[new]
     #[pyo3(
-        signature = (model="gaussian".to_owned(), preset=None, *, energy=CONSERVING, like=None, **fields),
-        text_signature = "(model='gaussian', preset=None, *, energy='conserving', like=None, **fields)"
+        signature = (model="gaussian".to_owned(), preset=None, *, energy=CONSERVING, like=None, color_of=None, **fields),
+        text_signature = "(model='gaussian', preset=None, *, energy='conserving', like=None, color_of=None, **fields)"
     )]
     fn new(
         #[pyo3(from_py_with = model_of)] model: String,
         preset: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = energy_of)] energy: (&'static str, u32),
         like: Option<&Bound<'_, PyAny>>,
+        color_of: Option<&Bound<'_, PyAny>>,
         fields: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
+        let color = color_of.map(|of| take_color(of, fields)).transpose()?;
         let preset = preset.map(|preset| word(&"preset", preset)).transpose()?;
         let like = like.map(|like| word(&"like", like)).transpose()?;
-        let params = match like {
+        let mut params = match like {
             Some(like) => params_like(&model, preset.as_deref(), &like, fields)?,
             None => params_of(&model, preset.as_deref(), fields)?,
         };
+        if let Some(color) = color {
+            set_color(&mut params, &color)?;
+        }
         Self::of(&params, energy)
     }
 

@@ -34,6 +34,37 @@ pub(crate) fn energy_of(value: &Bound<'_, PyAny>) -> PyResult<(&'static str, u32
     })
 }
 
+/// Takes the field "color" from the fields of a call, which is the caller's own dict; returns the colour with the word of its subject.
+pub(crate) fn take_color(
+    of: &Bound<'_, PyAny>,
+    fields: Option<&Bound<'_, PyDict>>,
+) -> PyResult<([f32; 3], CString)> {
+    let of = c_string("color_of", &word(&"color_of", of)?)?;
+    let given = |name| fields.map_or(Ok(None), |fields| fields.get_item(name));
+    for name in ["sigma_a", "melanin", "melanin_amount"] {
+        if given(name)?.is_some() {
+            return Err(PyValueError::new_err(format!(
+                "{name} and color exclude each other; give one"
+            )));
+        }
+    }
+    let (Some(color), Some(fields)) = (given("color")?, fields) else {
+        return Err(PyValueError::new_err("color must be given where color_of is, got None"));
+    };
+    fields.del_item("color")?;
+    Ok((vector("color", &color)?, of))
+}
+
+/// Sets what decides the colour of hair.
+pub(crate) fn set_color(params: &mut Params, (color, of): &([f32; 3], CString)) -> PyResult<()> {
+    let mut error = no_error();
+    // SAFETY: the arguments are of this call.
+    let status = unsafe {
+        hairis_capi::color::hairis_params_set_color(params, color, of.as_ptr(), &raw mut error)
+    };
+    check(status, &error)
+}
+
 /// Makes parameters of Chiang's fibre in the terms of another renderer, with the values of `fields` in place of its defaults.
 pub(crate) fn params_like(
     model: &str,

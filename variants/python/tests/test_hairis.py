@@ -207,6 +207,16 @@ def test_out() -> None:
         assert empty["value"].shape == (3, 0)
 
 
+@pytest.mark.parametrize("model", ["d-eon", "gaussian"])
+def test_colour_of_a_fibre(model: str) -> None:
+    color = (0.5, 0.3, 0.1)
+    hair = hairis.Material(model, "brown", color=color, color_of="fibre")
+    lobes = hair.prepare((0, 1, 0)).albedo().values()
+    assert np.sum(list(lobes), axis=0) == pytest.approx(color, abs=1e-3)
+    assert hairis.Material.from_json(hair.to_json()) == hair
+    assert hair != hairis.Material(model, "brown", color=color, color_of="mass")
+
+
 def test_json_of_requests() -> None:
     hair = hairis.Material("chiang", "brown")
     request = {**json.loads(hair.to_json()), "wo": [0, 1, 0], "wi": [0, 0, 1], "h": 0.5}
