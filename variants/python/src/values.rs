@@ -49,7 +49,9 @@ pub(crate) fn take_color(
         }
     }
     let (Some(color), Some(fields)) = (given("color")?, fields) else {
-        return Err(PyValueError::new_err("color must be given where color_of is, got None"));
+        return Err(PyValueError::new_err(
+            "color must be given where color_of is, got None",
+        ));
     };
     fields.del_item("color")?;
     Ok((vector("color", &color)?, of))
