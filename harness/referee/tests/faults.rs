@@ -176,7 +176,7 @@ fn wrong_shapes_are_found_by_lobe() {
     assert_wrong("glints", &bright, &words);
 }
 
-/// Glints of MoonRay: Gaussians of the azimuth with weights that are themselves Gaussians of it, and the rest of TRT for what they leave.
+/// Glints of `MoonRay`: Gaussians of the azimuth with weights that are themselves Gaussians of it, and the rest of TRT for what they leave.
 #[test]
 fn weights_that_depend_on_the_azimuth_are_no_mixture() {
     let answers = answered(&cases("gaussian"), |case, line| {

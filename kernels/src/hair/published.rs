@@ -62,7 +62,8 @@ pub(crate) fn selection<L: Lanes>(energy: [L; 4]) -> ([L; 4], [L; 3], L) {
     let c = L::splat;
     let zero = c(0.0);
     let total = (energy[0] + energy[1]) + (energy[2] + energy[3]);
-    let inv_total = L::select_predictable(zero.lt(total), L::quotient(c(1.0), total), zero);
+    let inverse = L::quotient(c(1.0), total.max(c(f32::MIN_POSITIVE)));
+    let inv_total = L::select_predictable(zero.lt(total), inverse, zero);
     let p = times(energy, [inv_total; 4]);
     let (two, low) = (c(2.0), p[0] + p[1]);
     let more = [p[1] + p[2] + p[3], p[2] + p[3], p[3]];
@@ -126,8 +127,7 @@ fn energies<W: Precision>(
         root * W::of(beta[2]) * i_trt * of_trt,
         c(4.0 * PI) * W::of(beta[2]) * W::of(gamma_g) * i_trt * of_glint,
     ];
-    let largest = r.max(tt).max(trt).max(glint);
-    let largest = W::select(zero.lt(largest), largest, c(1.0));
+    let largest = r.max(tt).max(trt).max(glint).max(c(W::LEAST));
     let share = |energy: W, intensity: W| {
         let share = energy / largest;
         W::select(zero.lt(intensity), share.max(c(LEAST_SHARE)), share).rounded()

@@ -331,7 +331,9 @@ impl<M: LobeModel> Model for M {
             xi[0] - start,
             (xi[0] - 1.0) - start_less_one,
         );
-        let again = L::quotient(into, C::look_up(&m.selection, lobe));
+        // A lobe without energy has no share.
+        let share = C::look_up(&m.selection, lobe).max(c(f32::MIN_POSITIVE));
+        let again = L::quotient(into, share);
         // False for NaN.
         let numbers = (xi[0] + xi[1] + xi[2]).lt(c(f32::INFINITY));
         let xi = [
@@ -344,7 +346,7 @@ impl<M: LobeModel> Model for M {
         L::stage("density and weight of the sample, 0 where it is discarded");
         let sound = L::and(L::and(wi.is_sound(), c(LEAST_DENSITY).lt(pdf)), numbers);
         let limit = limit::<L>(sound);
-        let by = L::quotient(wi.cos_theta, pdf);
+        let by = L::quotient(wi.cos_theta, pdf.max(c(LEAST_DENSITY)));
         let Vec3x { x, y, z } = wi.vector;
         SampleLanes {
             wi: Vec3x::new(L::keep(sound, x), L::keep(sound, y), L::keep(sound, z)),
@@ -400,7 +402,7 @@ fn sampled_albedo<M: LobeModel, L: Lanes, C: Broadcast<L>>(
             sum = sum
                 + L::select(
                     sound,
-                    L::quotient(at.value * wi.cos_theta, at.pdf) * slope,
+                    L::quotient(at.value * wi.cos_theta, at.pdf.max(c(LEAST_DENSITY))) * slope,
                     c(0.0),
                 );
             color = at.color;

@@ -26,6 +26,8 @@ pub trait Precision:
     /// True if the type has more range than the constants. Otherwise colours are scaled before they are multiplied, and integrals
     /// are closed forms instead of sums.
     const IS_DOUBLE: bool;
+    /// Divisor in place of 0, below what sums and products of legal parameters may be.
+    const LEAST: f64;
 
     /// Converts a constant of a formula.
     fn constant(x: f64) -> Self;
@@ -70,6 +72,7 @@ impl sealed::Sealed for f64 {}
 impl Precision for f64 {
     type Lane = f32;
     const IS_DOUBLE: bool = true;
+    const LEAST: f64 = f64::MIN_POSITIVE;
 
     #[inline]
     fn constant(x: f64) -> Self {
@@ -152,6 +155,7 @@ impl<L: Lanes> Div for Single<L> {
 impl<L: Lanes<Stored = L> + Broadcast<L>> Precision for Single<L> {
     type Lane = L;
     const IS_DOUBLE: bool = false;
+    const LEAST: f64 = f32::MIN_POSITIVE as f64;
 
     #[expect(
         clippy::cast_possible_truncation,

@@ -3,7 +3,7 @@
 use crate::columns::hairis_sample_columns;
 use crate::handles::model_of;
 use crate::layout::{ARGUMENT, Crossed, DualScattering, OK, RawBsdf, RawMaterial, Samples};
-use crate::points::{hairis_albedo, hairis_prepare, hairis_restrict};
+use crate::points::{hairis_prepare, hairis_restrict};
 use core::mem::MaybeUninit;
 use core::ptr;
 use hairis::columns::SampleColumns;
@@ -12,7 +12,7 @@ use hairis::simd::Vec3x;
 use hairis::{Hit, Lobe};
 
 /// Returns a function that draws samples of one lobe of a material at a hit, by the calls of the interface, which are compiled for every model
-/// already. A lobe that scatters nothing is not sampled alone, because it has no share to divide by.
+/// already.
 ///
 /// # Safety
 ///
@@ -39,11 +39,6 @@ pub(crate) unsafe fn drawing(
         // SAFETY: the material is initialised, the BSDF is written before it is read, and columns have one length.
         unsafe {
             hairis_prepare(bsdf.as_mut_ptr(), from, wo.x, wo.y, wo.z, hit.h);
-            let mut albedo = [[0.0; 3]; Lobe::COUNT];
-            hairis_albedo(bsdf.as_ptr(), &raw mut albedo);
-            if albedo[lobe.index()].into_iter().all(|share| share <= 0.0) {
-                return;
-            }
             hairis_restrict(bsdf.as_mut_ptr(), 1 << lobe.index());
             hairis_sample_columns(
                 bsdf.as_ptr(),

@@ -102,15 +102,15 @@ fn intensity<W: Precision>(d: &HairDesc<W::Lane>) -> [[W::Lane; 3]; 4] {
     let mean = all.map(|[r, g, b]| (r + g + b) / c(3.0));
     let largest = mean[0].max(mean[1]).max(mean[2]).max(mean[3]);
     let least = largest * c(LEAST_IMPORTANCE);
-    // A divisor of 0 would leave no derivatives, even where the quotient is not used.
-    let or_1 = |x: W| W::select(zero.lt(x), x, c(1.0));
+    // Divisors are never 0, because compilers compute quotients that are not used.
+    let positive = |x: W| x.max(c(W::LEAST));
     core::array::from_fn(|lobe| {
         let own = mean[lobe];
         let is_faint = <W::Lane as Lanes>::and(zero.lt(own), own.lt(least));
         let by = W::select(
             is_faint,
-            c(LEAST_IMPORTANCE) / or_1(own),
-            c(1.0) / or_1(largest),
+            c(LEAST_IMPORTANCE) / positive(own),
+            c(1.0) / positive(largest),
         );
         all[lobe].map(|x| (x * by).rounded())
     })

@@ -98,7 +98,8 @@ where
         largest = largest.max(L::keep(zero.lt(importance[l] * size[l]), total[l]));
         l += 1;
     }
-    let scale = L::select(zero.lt(largest), L::quotient(c(1.0), largest), zero);
+    let inverse = L::quotient(c(1.0), largest.max(c(f32::MIN_POSITIVE)));
+    let scale = L::keep(zero.lt(largest), inverse);
     let size = times(size, times(total, [scale; 4]));
     if BY_CHANNEL {
         importance = by_channel::<L, C>(size, &m.intensity);
