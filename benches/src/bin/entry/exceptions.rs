@@ -10,7 +10,7 @@ use hairis::{Bsdf, Conserving, Hit, Material, PerLobe};
 use hairis_benches::entries::is_compiled;
 use hairis_benches::inputs::{Inputs, params};
 use hairis_benches::{Name, Task};
-use hairis_variants::{ModelId, Registered, Visitor};
+use hairis_variants::{Kind, ModelId, Parameters, Registered, Visitor};
 
 /// Flags of the exceptions that are counted: invalid operation, division by zero and overflow.
 const FLAGS: u32 = 1 | 4 | 8;
@@ -92,9 +92,32 @@ impl Visitor for OfModel<'_> {
         if const { !is_compiled(ModelId::of::<M>()) } {
             return 0;
         }
-        let raw = self.count(&M::MODEL, &params::<M>());
-        raw + self.count(&Conserving(M::MODEL), &params::<M>())
+        [params::<M>(), dark::<M>()]
+            .iter()
+            .map(|all| self.count(&M::MODEL, all) + self.count(&Conserving(M::MODEL), all))
+            .sum()
     }
+}
+
+/// Returns materials with a colour that is black, and with it lobes without energy: each colour in turn, and then all of them.
+fn dark<M: Registered>() -> [M::Params; 8] {
+    let mut materials = params::<M>();
+    let colors = || {
+        M::Params::FIELDS
+            .iter()
+            .filter(|field| field.kind == Kind::Rgb)
+    };
+    let count = colors().count();
+    for (i, material) in materials.iter_mut().enumerate() {
+        let chosen = colors()
+            .enumerate()
+            .filter(|(k, _)| i % (count + 1) == *k || i % (count + 1) == count);
+        let values = chosen.fold(material.values(), |values, (_, field)| {
+            values.with(field.name, &[0.0; 3])
+        });
+        *material = M::Params::from_values(&values).expect("black is in range");
+    }
+    materials
 }
 
 impl OfModel<'_> {
