@@ -6,7 +6,7 @@ use hairis::model::{Model, SampleLanes, Single};
 use hairis::simd::{Level, Vec3x, f32x8};
 use hairis::{Eval, Hit, Material, Material8};
 use hairis_shaders::{Call, Function, numbers, parameters};
-use hairis_variants::{Kind, ModelId, Parameters, Registered, Values, Visitor};
+use hairis_variants::{Field, Kind, ModelId, Parameters, Registered, Values, Visitor};
 
 /// Generator of random numbers, `SplitMix64`.
 pub(crate) struct Random(pub(crate) u64);
@@ -209,13 +209,19 @@ impl<M: Registered> Case<M> {
         cases
     }
 
-    /// Draws cases of the presets as most hits are: unit directions, and random numbers above 0.
+    /// Draws cases of the presets as most hits are: unit directions, and random numbers above 0. In every third a colour is black.
     pub(crate) fn everyday(count: usize, seed: u64) -> Vec<Self> {
         let mut random = Random(seed);
         let mut cases = Self::many(count, seed);
-        for (case, (_, params)) in cases.iter_mut().zip(M::Params::PRESETS.iter().cycle()) {
-            case.values = params.values();
-            case.material = M::MODEL.material(params);
+        let is_color = |field: &&Field| field.kind == Kind::Rgb;
+        let mut colors = M::Params::FIELDS.iter().filter(is_color).cycle();
+        let presets = M::Params::PRESETS.iter().cycle();
+        for ((case, (_, params)), k) in cases.iter_mut().zip(presets).zip(0..) {
+            let black = if k % 3 == 0 { colors.next() } else { None };
+            let values = params.values();
+            case.values = black.map_or(values, |field| values.with(field.name, &[0.0; 3]));
+            let params = M::Params::from_values(&case.values).expect("black is in range");
+            case.material = M::MODEL.material(&params);
             case.wo = random.sphere();
             case.h = random.range(-1.0, 1.0);
             case.wi = random.sphere();
