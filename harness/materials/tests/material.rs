@@ -86,7 +86,7 @@ fn one_field_of_a_group() {
         ),
         (
             r#","sigma_a":[0,0,0],"eumelanin":"brown""#,
-            "params.eumelanin: must be \"d-eon\" or \"cycles\", got \"brown\"",
+            r#"params.eumelanin: must be "d-eon" or "cycles" or "d-eon-acescg" or "cycles-acescg", got "brown""#,
         ),
         (
             r#","sigma_a":[0,0,0],"tint_r":"cycles""#,
