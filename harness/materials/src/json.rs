@@ -297,3 +297,13 @@ pub fn direction(path: &str, json: &Json) -> Result<[f64; 3], String> {
     };
     Ok([0, 1, 2].map(|row| numbers[row] / divisor))
 }
+
+/// Returns the nearest number of single precision, or an infinity if `x` is too large for it.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "single precision is what is asked for"
+)]
+#[must_use]
+pub fn single(x: f64) -> f32 {
+    x as f32
+}

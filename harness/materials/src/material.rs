@@ -1,6 +1,7 @@
 //! Models of the registry with their parameters, as programs read them from JSON.
 
 use crate::color;
+pub use crate::json::single;
 use crate::json::{Json, join, number, numbers, refusal, word};
 use hairis::ParamError;
 use hairis_variants::chiang::Likeness;
@@ -13,7 +14,7 @@ use hairis_variants::AnyMaterial;
 use hairis_variants::{Registered, Visitor};
 
 /// Fields of a JSON object, by name.
-pub(crate) type Fields = BTreeMap<String, Json>;
+type Fields = BTreeMap<String, Json>;
 
 /// Model of which other renderers have parameters of their own: see [`Likeness`].
 const LIKE: &str = "chiang";
@@ -108,6 +109,26 @@ impl MaterialSpec {
         })
     }
 
+    /// Returns a copy with other values. Those that differ are in single precision.
+    fn with_values(&self, values: Values) -> Result<Self, String> {
+        let changed = values
+            .fields()
+            .iter()
+            .filter(|field| values.has(field.name))
+            .filter(|field| values.numbers(field.name) != self.values.numbers(field.name));
+        let exact = changed.fold(self.exact, |exact, field| {
+            let numbers = values.numbers(field.name).iter();
+            let numbers: Vec<f64> = numbers.map(|x| f64::from(*x)).collect();
+            exact.with(field.name, &numbers)
+        });
+        let changed = Self::new(self.model, values).map_err(|error| error.to_string())?;
+        Ok(Self {
+            is_chosen: self.is_chosen,
+            exact,
+            ..changed
+        })
+    }
+
     /// Returns the first model with the name that an object gives, or the first model of all if no model has that name.
     #[must_use]
     pub fn first_of_name(object: &Json) -> ModelId {
@@ -198,7 +219,10 @@ impl MaterialSpec {
             ..rounded
         };
         match color {
-            Some(color) => read.colored(color),
+            Some(color) => {
+                let values = color::shown(read.model, &read.values, color)?;
+                read.with_values(values)
+            }
             None => Ok(read),
         }
     }
@@ -420,14 +444,4 @@ fn refused(path: &str, fields: &[Field], error: &ParamError, exact: &Values<f64>
         None => format!("must be {}, got {}", error.rule(), error.value()),
     };
     refusal(&(join(path, field.name) + &item), problem)
-}
-
-/// Returns the nearest number of single precision, or an infinity if `x` is too large for it.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "single precision is what is asked for"
-)]
-#[must_use]
-pub fn single(x: f64) -> f32 {
-    x as f32
 }

@@ -1,6 +1,6 @@
 //! Answers of another program: cases with numbers of its own.
 
-use crate::samples;
+use crate::draws::of_formulas;
 use hairis_materials::MaterialSpec;
 use hairis_materials::json::{Json, direction, number, numbers, offset, refusal};
 use hairis_reference::{Reference, exact_reference};
@@ -207,7 +207,7 @@ fn parse(line: usize, text: &str) -> Result<(ModelId, Answer), String> {
         },
         got,
         lobe_pdfs: point.lobe_pdfs(wi).0,
-        formulas: samples::of_formulas(&*point, samples.len()),
+        formulas: of_formulas(&*point, samples.len()),
         samples,
     };
     Ok((spec.model, answer))

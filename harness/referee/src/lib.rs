@@ -3,6 +3,7 @@
 
 pub mod answers;
 pub mod args;
+mod draws;
 #[cfg(any(doc, doctest))]
 pub mod guide;
 pub mod integrals;

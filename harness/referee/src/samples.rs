@@ -1,10 +1,7 @@
 //! Samples of a program beside its own density, by a chi-square test.
 
 use crate::answers::{Answer, Answers};
-use crate::vectors::even;
-use crate::verdict::Verdict;
 use core::fmt;
-use hairis_reference::Reference;
 
 /// Samples per cell, so that their count is nearly normal.
 const SAMPLES: usize = 16;
@@ -12,8 +9,6 @@ const SAMPLES: usize = 16;
 const ANSWERS: usize = 16;
 /// Most cells of a shading point.
 const MOST: usize = 64;
-/// Samples of the formulas for each sample of the program.
-const MORE: usize = 4;
 
 /// Counts of samples beside the integrals of the density over the same cells of directions.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,30 +68,19 @@ impl fmt::Display for Cell {
     }
 }
 
-/// Draws directions by the sampler of the formulas, for a count of samples to compare with them.
-pub(crate) fn of_formulas(point: &dyn Reference<f64>, count: usize) -> Vec<Option<[f64; 3]>> {
-    let draws = u32::try_from(MORE * count).unwrap_or(u32::MAX);
-    (0..draws)
-        .map(|n| {
-            let drawn = point.sample(even(0, n));
-            drawn.lobe.map(|_| drawn.wi)
-        })
-        .collect()
-}
-
 /// Compares samples with the density that the program states. `None` without samples, or without densities at directions whose own
 /// density is known. `is_right` says that the densities are those of the formulas.
-pub(crate) fn judge(answers: &Answers, is_right: bool) -> Option<Verdict> {
+pub(crate) fn judge(answers: &Answers, is_right: bool) -> Option<Drawn> {
     let cells = answers.scenes().filter_map(|scene| cells(scene, is_right));
     let cells: Vec<Cell> = cells.flatten().collect();
     let worst = cells
         .iter()
         .max_by(|a, b| a.away.abs().total_cmp(&b.away.abs()))?;
-    Some(Verdict::Drawn(Drawn {
+    Some(Drawn {
         chi_square: cells.iter().map(|cell| cell.away.powi(2)).sum(),
         cells: cells.len(),
         worst: *worst,
-    }))
+    })
 }
 
 /// Returns the cells of a shading point. The integral of the program's density over a cell is the share of the formulas' samples, and the

@@ -2,6 +2,7 @@
 
 use crate::answers::Numbers;
 use crate::args::Vectors;
+use crate::draws::even;
 use core::f64::consts::{PI, TAU};
 use hairis_materials::material::{find_model, find_sampler, values_json};
 use hairis_program::error::Error;
@@ -11,15 +12,6 @@ use serde_json::{Map, Value, json};
 
 /// Density of directions that are uniform over the sphere, per steradian.
 const UNIFORM: f64 = 1.0 / (4.0 * PI);
-/// Root of `x^4 = x + 1`: its powers make an even sequence of three numbers.
-const ROOT: f64 = 1.220_744_084_605_759_5;
-
-/// Returns point `n` of an even sequence in the unit cube.
-pub(crate) fn even(seed: u64, n: u32) -> [f64; 3] {
-    let shift = (seed % (1 << 20)) as f64 / ROOT.powi(5);
-    [1, 2, 3].map(|power| (0.5 + shift + f64::from(n + 1) / ROOT.powi(power)).fract())
-}
-
 /// Shading point of a preset.
 struct Scene {
     values: Values,

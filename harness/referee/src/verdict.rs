@@ -176,7 +176,10 @@ pub fn judge(answers: &Answers, tolerance: f64) -> Vec<Line> {
     if sums {
         add("pdf's integral", not_normalised(answers));
     }
-    add("samples", samples::judge(answers, !sums));
+    add(
+        "samples",
+        samples::judge(answers, !sums).map(Verdict::Drawn),
+    );
     lines
 }
 

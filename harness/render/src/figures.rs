@@ -1,6 +1,7 @@
 //! Subcommand `hairis-render figures`, which compares samplers side by side, as pictures and as numbers, on one page.
 
 pub mod csv;
+pub mod done;
 pub mod dual;
 pub mod map;
 pub mod measure;
@@ -16,6 +17,7 @@ use crate::args::Figures;
 use crate::environment::environment;
 use crate::hair::Choice;
 use crate::scenes::Name;
+use done::Done;
 use dual::Pair;
 use hairis_instruments::error::Error;
 use hairis_instruments::interrupt::Interrupt;
@@ -40,17 +42,6 @@ pub const SCENES: [Name; 7] = [
     Name::Box,
     Name::Head,
 ];
-
-/// Measurements that are finished.
-#[derive(Debug, Default)]
-pub struct Done {
-    /// Samplers by scene.
-    pub scenes: Vec<Measured>,
-    /// Models by preset.
-    pub presets: Vec<Preset>,
-    /// Dual scattering by preset and model.
-    pub dual: Vec<Pair>,
-}
 
 /// Compares samplers on every scene, and writes `report.html` with its figures as `figures.csv`,
 /// its settings as `figures.json` and an EXR file of each picture beside it. A run that was stopped

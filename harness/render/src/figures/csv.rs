@@ -1,7 +1,7 @@
 //! Figures of the page as a CSV table for other programs.
 
-use super::Done;
-use super::dual::Pair;
+use super::done::Done;
+use super::dual::{self, Pair};
 use super::measure::{Measured, Plan};
 use super::page::kind;
 use super::rates::level;
@@ -71,7 +71,9 @@ pub(super) fn write(done: &Done, settings: &FiguresSettings, out: &Path) -> Resu
             rows.push(start.row(what, Estimate::exact(look), false));
         }
     }
-    rows.extend(done.dual.iter().flat_map(Pair::rows));
+    for pair in &done.dual {
+        compared(pair, &mut rows);
+    }
     whole(&out.join("figures.csv"), |file| {
         columns(&rows).write_csv(file)
     })?;
@@ -266,4 +268,27 @@ fn figures(start: &Start, runs: &Runs, (name_of_best, best): (&str, &Runs), rows
 /// Rounds a number to five significant digits.
 fn digits(value: f64) -> f64 {
     format!("{value:.4e}").parse().unwrap_or(value)
+}
+
+/// Adds the rows of dual scattering beside paths.
+fn compared(pair: &Pair, rows: &mut Vec<Row>) {
+    let start = Start {
+        scene: dual::SCENE.word().to_owned(),
+        light: "paths".to_owned(),
+        hair: pair.preset.to_owned(),
+        sampler: pair.model,
+        protocol: "",
+        samples: Some(pair.samples),
+    };
+    let mut add = |what: &str, value| rows.push(start.row(what, Estimate::exact(value), false));
+    for (name, mean) in ["red", "green", "blue"].into_iter().zip(pair.means) {
+        add(
+            &format!("mean of dual scattering over that of paths in {name}"),
+            mean,
+        );
+    }
+    add("share of light scattered once in red", pair.once[0]);
+    add("difference of dual scattering by block", pair.by_block);
+    let [dual, paths] = pair.times;
+    add("time of dual scattering over that of paths", dual / paths);
 }

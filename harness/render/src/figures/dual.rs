@@ -1,6 +1,5 @@
 //! Dual scattering beside paths of any length: one head of hair in four colours.
 
-use super::csv::{Row, Start};
 use super::map::Map;
 use super::measure::Plan;
 use super::panel::{Column, crops, panel};
@@ -13,7 +12,6 @@ use crate::scenes::{self, Name, Parts};
 use crate::transport::{Integrator, Mis, Settings};
 use hairis_instruments::error::Error;
 use hairis_instruments::report::{Drawing, Section};
-use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::{Table, number};
 use std::collections::BTreeMap;
 
@@ -29,10 +27,12 @@ pub(super) const SCENE: Name = Name::AreaHead;
 /// Dual scattering of one model and one preset beside paths of any length, on the pixels whose centre shows hair.
 #[derive(Debug)]
 pub struct Pair {
-    model: &'static str,
-    preset: &'static str,
+    /// Name of the model.
+    pub(super) model: &'static str,
+    /// Name of the preset.
+    pub(super) preset: &'static str,
     /// Samples per pixel of each picture.
-    samples: u32,
+    pub(super) samples: u32,
     paths: Reference,
     dual: Reference,
     /// Mean over that of paths, in red, green and blue.
@@ -116,32 +116,6 @@ impl Pair {
     /// Returns the relative difference of each pixel's luminance.
     fn differences(&self) -> Vec<f64> {
         self.paths.relative(&self.paths.signed(&self.dual.picture))
-    }
-
-    /// Returns the rows of the figures.
-    pub(super) fn rows(&self) -> impl Iterator<Item = Row> {
-        let start = Start {
-            scene: SCENE.word().to_owned(),
-            light: "paths".to_owned(),
-            hair: self.preset.to_owned(),
-            sampler: self.model,
-            protocol: "",
-            samples: Some(self.samples),
-        };
-        let channels = ["red", "green", "blue"].into_iter().zip(self.means);
-        let means = channels.map(|(name, mean)| {
-            let what = format!("mean of dual scattering over that of paths in {name}");
-            (what, mean)
-        });
-        let [dual, paths] = self.times;
-        let others = [
-            ("share of light scattered once in red", self.once[0]),
-            ("difference of dual scattering by block", self.by_block),
-            ("time of dual scattering over that of paths", dual / paths),
-        ];
-        means
-            .chain(others.map(|(what, value)| (what.to_owned(), value)))
-            .map(move |(what, value)| start.row(&what, Estimate::exact(value), false))
     }
 }
 

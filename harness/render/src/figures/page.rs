@@ -1,6 +1,6 @@
 //! Page of the report, with its charts, tables and pictures.
 
-use super::Done;
+use super::done::Done;
 use super::map::{Map, scale};
 use super::measure::{BySampler, Measured, Plan, SAMPLERS};
 use super::panel::{Column, crops, panel};
