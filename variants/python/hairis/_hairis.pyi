@@ -16,7 +16,7 @@ class Material:
         *,
         energy: Energy = "conserving",
         like: str | None = None,
-        color_of: Literal["mass", "fibre", "chiang"] | None = None,
+        color_of: str | None = None,
         **fields: Field,
     ) -> Material: ...
     @staticmethod
