@@ -101,7 +101,11 @@ fn cells(scene: &[Answer], is_right: bool) -> Option<Vec<Cell>> {
     let [count, of_formulas, answers] =
         [first.samples.len(), first.formulas.len(), off.len()].map(|count| count as f64);
     let most = if is_right { MOST } else { off.len() / ANSWERS };
-    let most = most.min(MOST).min(drawn.len() / SAMPLES).max(1);
+    let most = most.min(MOST).min(drawn.len() / SAMPLES);
+    // All samples lie in a single cell, whatever their density.
+    if most < 2 {
+        return None;
+    }
     let rows = most.isqrt();
     let mut cells = Vec::new();
     for (theta, row) in parts(wanted, 0, rows) {

@@ -61,6 +61,17 @@ fn right_samples_raise_no_alarm() {
 }
 
 #[test]
+fn few_samples_say_nothing() {
+    let cases = cases("gaussian");
+    for count in [1, 31] {
+        let answers = with_samples(&cases, count, 1, &[]);
+        let lines = verdicts(&answers);
+        let says = lines.iter().any(|line| line.starts_with("samples"));
+        assert!(!says, "{count}: {lines:?}");
+    }
+}
+
+#[test]
 fn samples_of_another_density_are_found() {
     let samples = ["samples .. WRONG: chi-square .. from the viewer, from line"];
     for (model, set) in [
