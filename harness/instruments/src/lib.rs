@@ -13,6 +13,7 @@ pub mod pixels;
 pub mod plot;
 pub mod progress;
 pub mod quadrature;
+pub mod record;
 pub mod report;
 pub mod sequence;
 pub mod shard;

@@ -9,6 +9,7 @@ mod markup;
 mod pixels;
 mod plot;
 mod quadrature;
+mod record;
 mod report;
 mod sequence;
 mod shard;

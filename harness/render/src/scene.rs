@@ -69,6 +69,18 @@ impl Scene {
         (place, hair)
     }
 
+    /// Returns the indices of the pixels whose centre shows hair, row by row.
+    #[must_use]
+    pub fn pixels_of_hair(&self) -> Vec<usize> {
+        let [width, height] = self.camera.size();
+        let ray = |x: u32, y: u32| self.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
+        (0..)
+            .zip((0..height).flat_map(|y| (0..width).map(move |x| (x, y))))
+            .filter(|(_, (x, y))| matches!(self.closest(&ray(*x, *y)), Met::Hair(_)))
+            .map(|(k, _)| k)
+            .collect()
+    }
+
     /// Finds the first object along a ray, among hair, head and rectangles.
     #[inline]
     #[must_use]

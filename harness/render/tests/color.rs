@@ -3,15 +3,17 @@
 use crate::support::{film, hair_of, scene};
 use glam::Vec3;
 use hairis_instruments::light::Constant;
+use hairis_instruments::record;
 use hairis_render::film::Picture;
 use hairis_render::hair::{Choice, Energy};
-use hairis_render::scene::{Met, Scene};
+use hairis_render::picture::srgb;
+use hairis_render::scene::Scene;
 use hairis_render::scenes::Name;
 use hairis_render::transport::{Integrator, Mis, Settings};
 use hairis_variants::ModelId;
 use hairis_variants::color::ColorOf;
 use image::{Rgb, RgbImage};
-use std::process::Command;
+use std::path::Path;
 
 /// Colours that artists ask for: blacks and browns, red and blond hair, greys, and dyes.
 const ASKED: [[f32; 3]; 12] = [
@@ -34,7 +36,8 @@ struct Head {
     scene: Scene,
     settings: Settings,
     samples: u32,
-    shows: Vec<bool>,
+    /// Indices of the pixels that show hair.
+    shows: Vec<usize>,
     /// Share of the background in each pixel.
     behind: Vec<f64>,
 }
@@ -45,10 +48,7 @@ impl Head {
         let mut scene = scene(name, hair, strands, side);
         scene.sky = Constant.into();
         scene.rectangles.clear();
-        let at = |x: u32, y: u32| scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
-        let shows = (0..side * side)
-            .map(|k| matches!(scene.closest(&at(k % side, k / side)), Met::Hair(_)))
-            .collect();
+        let shows = scene.pixels_of_hair();
         let settings = Settings {
             integrator: Integrator::Path,
             mis: Mis::Resampled,
@@ -82,10 +82,8 @@ impl Head {
         (choice.id, choice.values) = (best, *values);
         self.scene.hair = choice.hair(Energy::PerWo).expect("in range");
         let picture = self.picture();
-        let of = |value: &dyn Fn(usize) -> f64| -> f64 {
-            let shown = self.shows.iter().enumerate().filter(|(_, shows)| **shows);
-            shown.map(|(k, _)| value(k)).sum()
-        };
+        let of =
+            |value: &dyn Fn(usize) -> f64| -> f64 { self.shows.iter().map(|k| value(*k)).sum() };
         let hair = of(&|k| 1.0 - self.behind[k]);
         let mean = [0, 1, 2].map(|c| of(&|k| picture.pixels[k][c]) / hair);
         (picture, mean)
@@ -113,22 +111,6 @@ fn a_head_shows_the_colour_that_is_asked_of_a_mass() {
         let error = shown[c] - f64::from(asked[c]);
         assert!(error.abs() < 0.025, "{shown:?}");
     }
-}
-
-/// Converts a linear channel to sRGB.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a share of 255"
-)]
-fn srgb(x: f64) -> u8 {
-    let x = x.clamp(0.0, 1.0);
-    let curve = if x < 0.003_130_8 {
-        12.92 * x
-    } else {
-        1.055 * x.powf(1.0 / 2.4) - 0.055
-    };
-    (255.0 * curve).round() as u8
 }
 
 /// Part of a picture of 96 pixels square that has the head: left, top, width and height.
@@ -195,22 +177,20 @@ fn record_of_colours_on_a_head() {
         }
     }
     if std::env::var("HAIRIS_RECORD").is_ok_and(|word| word == "write") {
-        let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-        let machine = hairis_instruments::machine!();
-        let date = Command::new("date")
-            .arg("-I")
-            .output()
-            .expect("there is a clock");
-        let text = format!(
-            "# CPU: {}\n# commit: {}\n# date: {}# colours of twelve heads of 96 x 96 pixels and 64 samples, less those asked\n\
-             scene,model,sense,rms,largest,mean\n{}\n",
-            machine.cpu,
-            &machine.commit[..8],
-            String::from_utf8_lossy(&date.stdout),
-            rows.join("\n")
-        );
-        std::fs::write(format!("{root}/benches/records/color-heads.csv"), text).expect("a record");
-        let place = format!("{root}/target/color.png");
-        strip.save(place).expect("a picture");
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let path = root.join("benches/records/color-heads.csv");
+        let about = "colours of twelve heads of 96 x 96 pixels and 64 samples, less those asked";
+        let columns = "scene,model,sense,rms,largest,mean";
+        record::write(
+            &path,
+            &hairis_instruments::machine!(),
+            about,
+            columns,
+            &rows,
+        )
+        .expect("a record");
+        strip
+            .save(root.join("target/color.png"))
+            .expect("a picture");
     }
 }

@@ -1,11 +1,12 @@
 //! Dual scattering against paths of any length.
 
 use hairis_instruments::interrupt::Interrupt;
+use hairis_instruments::record;
 use hairis_render::figures::dual::{COLOURS, Pair};
 use hairis_render::figures::measure::Plan;
 use hairis_render::figures::store::Store;
 use hairis_render::scenes::Name;
-use std::process::Command;
+use std::path::Path;
 
 fn compare(name: Name, hair: [&'static str; 2], plan: &Plan) -> Pair {
     let folder = tempfile::TempDir::new().expect("a folder");
@@ -72,23 +73,17 @@ fn record_of_dual_scattering() {
         }
     }
     if std::env::var("HAIRIS_RECORD").is_ok_and(|word| word == "write") {
-        let path = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../benches/records/dual.csv"
-        );
-        let machine = hairis_instruments::machine!();
-        let date = Command::new("date")
-            .arg("-I")
-            .output()
-            .expect("there is a clock");
-        let text = format!(
-            "# CPU: {}\n# commit: {}\n# date: {}# dual scattering over paths, of 512 samples each, on pixels of 96 x 96 that show hair\n\
-             scene,model,colour,red,green,blue,noise,once,by block,dual ms,paths ms\n{}\n",
-            machine.cpu,
-            &machine.commit[..8],
-            String::from_utf8_lossy(&date.stdout),
-            rows.join("\n")
-        );
-        std::fs::write(path, text).expect("the record can be written");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../benches/records/dual.csv");
+        let about =
+            "dual scattering over paths, of 512 samples each, on pixels of 96 x 96 that show hair";
+        let columns = "scene,model,colour,red,green,blue,noise,once,by block,dual ms,paths ms";
+        record::write(
+            &path,
+            &hairis_instruments::machine!(),
+            about,
+            columns,
+            &rows,
+        )
+        .expect("the record can be written");
     }
 }

@@ -1,11 +1,11 @@
 //! Distance of models from traced fibres.
 
 use hairis_instruments::plot::{Axis, PolarPanel, Series, lines, polar};
+use hairis_instruments::record;
 use hairis_reference::truth::Fiber;
 use hairis_study::fit::truth::{Lights, PARTS, fibers};
 use hairis_variants::{Kind, ModelId, Values};
 use std::path::Path;
-use std::process::Command;
 use std::time::Instant;
 
 const MODELS: [ModelId; 5] = [
@@ -175,20 +175,18 @@ fn record_of_the_distance_from_physics() {
         }
     }
     if written == "write" {
-        let machine = hairis_instruments::machine!();
-        let date = Command::new("date")
-            .arg("-I")
-            .output()
-            .expect("there is a clock");
-        let text = format!(
-            "# CPU: {}\n# commit: {}\n# date: {}# L1 distance of fitted models from traced fibres, {paths} paths per view, over views at 0, 30 and 60 degrees\n\
-             fibre,model,total,energy R,R,energy TT,TT,energy further,further,values\n{}\n",
-            machine.cpu,
-            &machine.commit[..8],
-            String::from_utf8_lossy(&date.stdout),
-            rows.join("\n")
+        let about = format!(
+            "L1 distance of fitted models from traced fibres, {paths} paths per view, over views at 0, 30 and 60 degrees"
         );
-        std::fs::write(path, text).expect("the record can be written");
+        let columns = "fibre,model,total,energy R,R,energy TT,TT,energy further,further,values";
+        record::write(
+            &path,
+            &hairis_instruments::machine!(),
+            &about,
+            columns,
+            &rows,
+        )
+        .expect("the record can be written");
     }
 }
 

@@ -7,8 +7,7 @@ use super::store::Store;
 use crate::hair::{Choice, Energy, default_sampler};
 use crate::picture::exposure;
 use crate::protocol::Reference;
-use crate::scene::{Met, Scene};
-use crate::scenes::{self, Name, Parts};
+use crate::scenes::Name;
 use crate::transport::{Integrator, Mis, Settings};
 use hairis_instruments::error::Error;
 use hairis_instruments::report::{Drawing, Section};
@@ -64,19 +63,7 @@ impl Pair {
         // Looks need fewer samples than errors.
         let halves = plan.reference[1] / 4;
         let choice = Choice::find(model, default_sampler(model), preset)?;
-        let parts = Parts {
-            strands: scenes::grow(name, plan.strands)?,
-            imported: false,
-            head: None,
-            hair: choice.hair(Energy::PerWo)?,
-            env: None,
-            size: [plan.side; 2],
-            turn: 0.0,
-        };
-        let scene = Scene {
-            rectangle_sampling: plan.rectangle_sampling,
-            ..scenes::build(name, parts)?
-        };
+        let scene = plan.build(name, choice.hair(Energy::PerWo)?, None)?;
         let of_scene = format!("{} energy=PerWo", plan.scene(name, &choice));
         let render = |integrator: Integrator, mis| {
             let settings = Settings {
@@ -91,7 +78,7 @@ impl Pair {
         let paths = render(Integrator::Path, Mis::Resampled)?;
         let once = render(Integrator::Direct, Mis::Resampled)?;
         let dual = render(Integrator::Dual, Mis::Light)?;
-        let shown = shows_hair(&scene);
+        let shown = scene.pixels_of_hair();
         let over = |part: &Reference| {
             let sum = |of: &Reference, c: usize| -> f64 {
                 shown.iter().map(|k| of.picture.pixels[*k][c]).sum()
@@ -138,17 +125,6 @@ fn by_block(paths: &Reference, dual: &Reference, shown: &[usize]) -> f64 {
     let mean = |of: fn(&[f64; 3]) -> f64| blocks.values().map(of).sum::<f64>() / count;
     let square = mean(|[_, signed, noise]| signed * signed - noise);
     square.max(0.0).sqrt() / mean(|[luminance, ..]| *luminance)
-}
-
-/// Returns the indices of the pixels whose centre shows hair.
-fn shows_hair(scene: &Scene) -> Vec<usize> {
-    let [width, height] = scene.camera.size();
-    let ray = |x: u32, y: u32| scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
-    (0..)
-        .zip((0..height).flat_map(|y| (0..width).map(move |x| (x, y))))
-        .filter(|(_, (x, y))| matches!(scene.closest(&ray(*x, *y)), Met::Hair(_)))
-        .map(|(k, _)| k)
-        .collect()
 }
 
 /// Returns the answer in a sentence: how far means are off, and what is saved.

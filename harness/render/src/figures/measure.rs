@@ -5,6 +5,7 @@ use crate::film::{Crop, Picture};
 use crate::hair::{Choice, Energy, MATCHED, PUBLISHED, UNIFORM, check_paths};
 use crate::layers::Beside;
 use crate::lights::RectangleSampling;
+use crate::material::Hair;
 use crate::numbers::Sequence;
 use crate::part::build;
 use crate::picture;
@@ -100,6 +101,28 @@ impl Plan {
         format!("scene={name} {hair} side={side} strands={strands} rectangles={rectangles:?}")
     }
 
+    /// Builds a scene with hair, under a map if the scene has one of the caller's.
+    pub(super) fn build(
+        &self,
+        name: Name,
+        hair: Hair,
+        env: Option<Environment>,
+    ) -> Result<Scene, Error> {
+        let parts = Parts {
+            strands: scenes::grow(name, self.strands)?,
+            imported: false,
+            head: None,
+            hair,
+            env,
+            size: [self.side; 2],
+            turn: 0.0,
+        };
+        Ok(Scene {
+            rectangle_sampling: self.rectangle_sampling,
+            ..scenes::build(name, parts)?
+        })
+    }
+
     /// Returns the settings of all samplers' pictures of a scene, except what differs between samplers.
     fn settings(&self, name: Name, seed: u64) -> Settings {
         let defaults = name.defaults();
@@ -186,21 +209,8 @@ impl Measured {
         let (map_name, map) = map.unzip();
         let digest = map.as_ref().map_or(0, Environment::digest);
         let sampled = |sampler| hair.sampled(sampler)?.hair(Energy::Raw);
-        let strands = scenes::grow(name, plan.strands)?;
-        let parts = Parts {
-            strands,
-            imported: false,
-            head: None,
-            hair: sampled(hair.best())?,
-            env: map,
-            size: [plan.side; 2],
-            turn: 0.0,
-        };
         step(&format!("{}: tree", name.word()));
-        let mut scene = Scene {
-            rectangle_sampling: plan.rectangle_sampling,
-            ..scenes::build(name, parts)?
-        };
+        let mut scene = plan.build(name, sampled(hair.best())?, map)?;
         let settings = plan.settings(name, seed);
         let integrator = settings.integrator;
         let kind = usize::from(integrator != Integrator::Gather);

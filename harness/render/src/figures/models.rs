@@ -7,8 +7,7 @@ use super::store::Store;
 use crate::hair::{Choice, Energy, check_paths, default_sampler};
 use crate::picture::exposure;
 use crate::protocol::Reference;
-use crate::scene::Scene;
-use crate::scenes::{self, Name, Parts};
+use crate::scenes::Name;
 use crate::transport::Settings;
 use hairis_instruments::error::Error;
 use hairis_instruments::report::{Drawing, Section};
@@ -39,10 +38,8 @@ impl Preset {
         store: &Store,
         step: &dyn Fn(&str),
     ) -> Result<Self, Error> {
-        let scene = Name::Head;
         // A quarter of the samples of references of paths, because looks need fewer samples than errors.
         let samples = plan.reference[1] / 4;
-        let strands = scenes::grow(scene, plan.strands)?;
         let hair = |model: &str| {
             let choice = Choice::find(model, default_sampler(model), name)?;
             Ok::<_, Error>((choice.hair(Energy::Raw)?, choice))
@@ -58,19 +55,7 @@ impl Preset {
                 models: Vec::new(),
             });
         };
-        let parts = Parts {
-            strands,
-            imported: false,
-            head: None,
-            hair: *first,
-            env: None,
-            size: [plan.side; 2],
-            turn: 0.0,
-        };
-        let mut scene = Scene {
-            rectangle_sampling: plan.rectangle_sampling,
-            ..scenes::build(scene, parts)?
-        };
+        let mut scene = plan.build(Name::Head, *first, None)?;
         let defaults = Name::Head.defaults();
         let settings = Settings {
             integrator: defaults.integrator,

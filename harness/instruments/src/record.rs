@@ -1,0 +1,29 @@
+//! Records of measurements on a machine: tables with what they depend on.
+
+use crate::machine::Machine;
+use std::io;
+use std::path::Path;
+use std::process::Command;
+
+/// Writes a record: the processor, the commit, the date, what the rows are `about`, the names of the columns, and the rows.
+///
+/// # Errors
+///
+/// Returns an error if the system tells no date, or if the file cannot be written.
+pub fn write(
+    path: &Path,
+    machine: &Machine,
+    about: &str,
+    columns: &str,
+    rows: &[String],
+) -> io::Result<()> {
+    let date = Command::new("date").arg("-I").output()?;
+    let text = format!(
+        "# CPU: {}\n# commit: {:.8}\n# date: {}# {about}\n{columns}\n{}\n",
+        machine.cpu,
+        machine.commit,
+        String::from_utf8_lossy(&date.stdout),
+        rows.join("\n")
+    );
+    std::fs::write(path, text)
+}
