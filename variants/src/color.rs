@@ -178,6 +178,13 @@ impl Dye {
     }
 }
 
+/// Returns true if an absorption or intensities of the model follow from the colour that hair shows.
+#[inline]
+#[must_use]
+pub fn has_color(id: ModelId) -> bool {
+    Dye::of(id, &id.defaults(), ColorOf::Fibre).is_ok()
+}
+
 /// Computes the colour of a mass of fibres from their albedo and its share that goes on, which is the mean of the albedo times the cosine of the
 /// azimuth by which light turns.
 ///

@@ -440,7 +440,7 @@ fn dual(to: &mut Stream) {
     }
 }
 
-/// What a material scatters at an inclination.
+/// Light that a material scatters at an inclination.
 struct Scattered<'a>(&'a Values, f32);
 
 impl Visitor for Scattered<'_> {

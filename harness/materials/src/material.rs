@@ -5,6 +5,7 @@ pub use crate::json::single;
 use crate::json::{Json, join, number, numbers, refusal, word};
 use hairis::ParamError;
 use hairis_variants::chiang::Likeness;
+use hairis_variants::color::has_color;
 use hairis_variants::{Field, Kind, ModelId, Parameters, Values};
 use std::collections::BTreeMap;
 
@@ -144,7 +145,7 @@ impl MaterialSpec {
         let h = first.is_near_field().then_some("h");
         let like = (first.name() == LIKE).then_some("like");
         // A colour takes measurements of the kernels.
-        let is_colored = cfg!(feature = "any") && first.name() != "kajiya-kay";
+        let is_colored = cfg!(feature = "any") && has_color(first);
         let color = is_colored.then_some(["color", "color_of"]);
         ["model"]
             .into_iter()

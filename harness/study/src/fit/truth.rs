@@ -7,7 +7,7 @@ use super::objective::minimise;
 use super::points::Points;
 use super::{FitConfig, starts};
 use glam::Vec3;
-use hairis::params::Pigments;
+use hairis::params::melanin_absorption;
 use hairis::{Hit, ParamError};
 use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::sequence::Independent;
@@ -27,20 +27,13 @@ const BATCHES: u32 = 64;
 /// Returns the fibres of the chapter, with their names.
 #[must_use]
 pub fn fibers() -> [(&'static str, Fiber); 12] {
-    let melanin = |eumelanin: f64, pheomelanin: f64| {
-        let Pigments {
-            eumelanin: e,
-            pheomelanin: p,
-        } = Pigments::D_EON;
-        [0, 1, 2].map(|c| eumelanin * f64::from(e[c]) + pheomelanin * f64::from(p[c]))
-    };
     let white = Fiber {
         roughness: 0.15,
         tilt: 2.5_f64.to_radians(),
         ..Fiber::default()
     };
     let colored = |eumelanin, pheomelanin| Fiber {
-        sigma_a: melanin(eumelanin, pheomelanin),
+        sigma_a: melanin_absorption([eumelanin, pheomelanin]).map(f64::from),
         ..white
     };
     let (blond, brown) = (colored(0.3, 0.0), colored(1.3, 0.0));
