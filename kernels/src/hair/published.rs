@@ -56,14 +56,13 @@ crate::simd::lane_struct! {
 /// An energy is 0 or at least 1e-36.
 ///
 /// The last lobe with any energy reaches to 2, so that a rounded sum never selects a lobe without energy. If no lobe has any energy,
-/// all probabilities and the last number are 0.
+/// all probabilities are 0, and the last number is finite.
 #[inline(always)]
 pub(crate) fn selection<L: Lanes>(energy: [L; 4]) -> ([L; 4], [L; 3], L) {
     let c = L::splat;
     let zero = c(0.0);
     let total = (energy[0] + energy[1]) + (energy[2] + energy[3]);
-    let inverse = L::quotient(c(1.0), total.max(c(f32::MIN_POSITIVE)));
-    let inv_total = L::select_predictable(zero.lt(total), inverse, zero);
+    let inv_total = L::quotient(c(1.0), total.max(c(f32::MIN_POSITIVE)));
     let p = times(energy, [inv_total; 4]);
     let (two, low) = (c(2.0), p[0] + p[1]);
     let more = [p[1] + p[2] + p[3], p[2] + p[3], p[3]];

@@ -167,11 +167,12 @@ const LEAST_DENSITY: f32 = 1e-30;
 /// Largest uniform number below 1.
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
-/// Sums value and density over the lobes; the sums are 0 where `wi` is not a valid direction.
+/// Sums value and density over the lobes; the sums are 0 where `wi` is not a valid direction, and the density is at least `least`.
 #[inline(always)]
 fn total<M: LobeModel, L: Lanes, C: Broadcast<L>>(
     prepared: &Mixed<M::Prepared<C>, C>,
     wi: &Direction<L>,
+    least: L,
 ) -> Eval<L> {
     let (PerLobe(lobes), mixture) = (M::lobes(&prepared.prepared, wi), &prepared.mixture);
     L::stage("value and density: sums over the lobes, 0 where wi is no direction");
@@ -203,7 +204,7 @@ fn total<M: LobeModel, L: Lanes, C: Broadcast<L>>(
     let [r, g, b, pdf] = sum;
     Eval {
         value: [within(r, limit), within(g, limit), within(b, limit)],
-        pdf: within(pdf, limit),
+        pdf: least.max(pdf.min(limit)),
     }
 }
 
@@ -289,7 +290,7 @@ impl<M: LobeModel> Model for M {
         prepared: &Mixed<M::Prepared<C>, C>,
         wi: Vec3x<L>,
     ) -> Eval<L> {
-        total::<M, L, C>(prepared, &Direction::new(wi))
+        total::<M, L, C>(prepared, &Direction::new(wi), L::splat(0.0))
     }
 
     #[inline(always)]
@@ -342,11 +343,13 @@ impl<M: LobeModel> Model for M {
             zero.max(xi[2].min(most)),
         ];
         let wi = M::sample_lobe(&prepared.prepared, lobe, xi);
-        let Eval { value, pdf } = total::<M, L, C>(prepared, &wi);
+        // A divisor, and so above 0.
+        let least = c(LEAST_DENSITY);
+        let Eval { value, pdf } = total::<M, L, C>(prepared, &wi, least);
         L::stage("density and weight of the sample, 0 where it is discarded");
-        let sound = L::and(L::and(wi.is_sound(), c(LEAST_DENSITY).lt(pdf)), numbers);
+        let sound = L::and(L::and(wi.is_sound(), least.lt(pdf)), numbers);
         let limit = limit::<L>(sound);
-        let by = L::quotient(wi.cos_theta, pdf.max(c(LEAST_DENSITY)));
+        let by = L::quotient(wi.cos_theta, pdf);
         let Vec3x { x, y, z } = wi.vector;
         SampleLanes {
             wi: Vec3x::new(L::keep(sound, x), L::keep(sound, y), L::keep(sound, z)),

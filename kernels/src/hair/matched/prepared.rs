@@ -92,14 +92,14 @@ where
     // To the scale of the largest area, which may be next to nothing where all lobes lie off the sphere.
     let mut importance = lanes4(&m.importance);
     let size = lanes4(&m.extent);
-    let mut largest = zero;
+    let least = c(f32::MIN_POSITIVE);
+    let mut largest = least;
     let mut l = 0;
     while l < 4 {
         largest = largest.max(L::keep(zero.lt(importance[l] * size[l]), total[l]));
         l += 1;
     }
-    let inverse = L::quotient(c(1.0), largest.max(c(f32::MIN_POSITIVE)));
-    let scale = L::keep(zero.lt(largest), inverse);
+    let scale = L::select(least.lt(largest), L::quotient(c(1.0), largest), zero);
     let size = times(size, times(total, [scale; 4]));
     if BY_CHANNEL {
         importance = by_channel::<L, C>(size, &m.intensity);
