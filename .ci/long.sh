@@ -4,8 +4,8 @@
 # samplers that differ by constants, and a search uphill of a second per stated bound; then, in CI's size, the tests of the kernels
 # compiled for x86-64-v3, the energy of 40,000 materials, and the tests that are ignored for their time, run once; then size and answers
 # of the C library with the feature `every-sampler`, the tests of models, derivatives, harness and renderer with it, those of the wheel and
-# Mitsuba's chi-square with it, models printed for Python in every framework, and the hosts without an operating system. The wheel needs
-# the virtual environment that .ci/hosts.sh makes.
+# Mitsuba's chi-square with it, models printed for Python in every framework, generated source of every model, and the hosts without an
+# operating system. The wheel needs the virtual environment that .ci/hosts.sh makes.
 #
 #   .ci/long.sh          one round
 #   .ci/long.sh ROUNDS   so many
@@ -78,5 +78,7 @@ frameworks() {
     DRJIT_LIBLLVM_PATH=$llvm "$python" .ci/frameworks.py "$program/hairis" numpy drjit torch jax
 }
 frameworks || { echo "FAIL models in frameworks of arrays"; failed=1; }
+# Generated source of every model.
+.ci/shaders.sh 4 || failed=1
 .ci/cortex_m.sh || failed=1
 exit $failed

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Promise: generated source is what it says. C and C++ (gcc, clang), SPIR-V and GLSL on a Vulkan driver have the bits of one lane
-# for every model, and so have Slang by way of GLSL and Python with NumPy; plain WGSL and Slang have its accuracy there, WGSL also on
-# WebGPU of headless Chromium, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C and PTX compile, and Slang as SPIR-V, WGSL, HLSL, Metal
+# Promise: generated source is what it says, for models with the code of all. C and C++ (gcc, clang), SPIR-V and GLSL on a Vulkan driver
+# have the bits of one lane, and so have Slang by way of GLSL and Python with NumPy; plain WGSL and Slang have its accuracy there, WGSL also
+# on WebGPU of headless Chromium, and NaN is black; GLSL, HLSL, SPIR-V, OpenCL C and PTX compile, and Slang as SPIR-V, WGSL, HLSL, Metal
 # and CUDA; gradients in C have the bits of the graph, and the compiler of Slang finds them; the examples fit widths by Slang, and draw
 # the same picture on wgpu and on the CPU.
 # Where nvcc and a GPU are, CUDA has the bits of one lane as well.
@@ -10,7 +10,7 @@
 # A tool that is missing is installed where apt can, and named where it cannot: its tests are skipped.
 #
 #   .ci/shaders.sh         4096 cases per model and function
-#   .ci/shaders.sh 32      32 times as many
+#   .ci/shaders.sh 32      32 times as many, for every model, with every arithmetic, and C at level 3 as well
 set -euo pipefail
 cd "$(dirname "$0")/.."
 for tool in clang glslangValidator spirv-val; do command -v "$tool" > /dev/null || missing=yes; done

@@ -1,7 +1,10 @@
 //! Tests that the header compiles without warnings as C and C++, and has the bits of one lane.
 
 use crate::gradients::Weighted;
-use crate::support::{Case, differing, every_model, fusing_level, same, visit_every_model};
+use crate::support::{
+    Case, differing, every_model, fusing_level, is_long, same, visit_code_of_models,
+    visit_every_model,
+};
 use hairis_conformance::cases;
 use hairis_shaders::{Call, Function, Language, Program, Rounding, Target, driver, print};
 use hairis_variants::{KajiyaKay, Parameters, Registered, Visitor};
@@ -58,7 +61,7 @@ pub(crate) fn compile(
 
 /// Runs a compiled driver on these inputs, and returns its results.
 pub(crate) fn run(program: &Path, function: &str, inputs: &[f32]) -> Vec<f32> {
-    let output = started(program, function, inputs);
+    let output = started(Command::new(program), function, inputs);
     assert!(output.status.success(), "{function}: {}", output.status);
     let (chunks, _) = output.stdout.as_chunks::<4>();
     chunks
@@ -67,8 +70,8 @@ pub(crate) fn run(program: &Path, function: &str, inputs: &[f32]) -> Vec<f32> {
         .collect()
 }
 
-fn started(program: &Path, function: &str, inputs: &[f32]) -> Output {
-    let mut child = Command::new(program)
+fn started(mut command: Command, function: &str, inputs: &[f32]) -> Output {
+    let mut child = command
         .arg(function)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -125,76 +128,13 @@ fn differences<M: Registered>(program: &Program, binary: &Path, cases: &[Case<M>
     differ
 }
 
-#[derive(Clone, Copy)]
-struct Bits {
-    compiler: &'static str,
-    flags: &'static [&'static str],
-    count: usize,
-}
-
-impl Visitor for Bits {
-    type Output = ();
-
-    fn visit<M: Registered>(self) {
-        let program = Program::of::<M>(Target::Exact);
-        let dir = TempDir::new().expect("a folder for the program");
-        let binary = compile(dir.path(), &source(&program), self.compiler, self.flags);
-        let binary = binary.unwrap_or_else(|error| panic!("{}: {error}", program.name()));
-        let cases = Case::<M>::many(cases(self.count), 42);
-        let differ = differences(&program, &binary, &cases);
-        let name = program.name();
-        assert_eq!(differ, 0, "{name} by {}: cases that differ", self.compiler);
-    }
-}
-
-fn bits(compiler: &'static str, flags: &'static [&'static str], count: usize) {
-    if exists(compiler) {
-        visit_every_model(Bits {
-            compiler,
-            flags,
-            count,
-        });
-    }
-}
-
-#[test]
-fn c_has_the_bits_of_one_lane() {
-    bits("gcc", &["-std=c99", "-O1"], 1024);
-}
-
-#[test]
-#[ignore = "slow: .ci/shaders.sh runs it"]
-fn optimised_c_has_the_bits_of_one_lane() {
-    bits("gcc", &["-std=c99", "-O2"], 4096);
-}
-
-#[test]
-#[ignore = "slow: .ci/shaders.sh runs it"]
-fn clang_has_the_bits_of_one_lane() {
-    bits("clang", &["-std=c99", "-O2"], 4096);
-}
-
-/// Clang contracts by default if the machine has fused instructions, but the pragma in the header forbids it.
-#[test]
-#[ignore = "slow: .ci/shaders.sh runs it"]
-fn clang_keeps_products_and_sums_apart() {
-    if fusing_level().is_some() && cfg!(target_arch = "x86_64") {
-        bits("clang", &["-O2", "-mfma"], 4096);
-    }
-}
-
-#[test]
-#[ignore = "slow: .ci/shaders.sh runs it"]
-fn cpp_has_the_bits_of_one_lane() {
-    for compiler in ["g++", "clang++"] {
-        bits(compiler, &["-std=c++17", "-O1", "-ffp-contract=off"], 4096);
-    }
-}
-
-/// Host that ends with SIGFPE at an invalid operation, a division by zero or an overflow; with `CONTROL`, at once.
+/// Host that ends with SIGFPE at an invalid operation, a division by zero or an overflow, where `HAIRIS_TRAPS` is set; with `CONTROL`, at
+/// once.
 const TRAPS: &str = "
 #include <fenv.h>
+#include <stdlib.h>
 __attribute__((constructor)) static void trap(void) {
+    if (!getenv(\"HAIRIS_TRAPS\")) return;
     feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
 #ifdef CONTROL
     volatile float zero = 0, quotient = zero / zero;
@@ -203,60 +143,151 @@ __attribute__((constructor)) static void trap(void) {
 }
 ";
 
-/// Returns the calls of a model that end a host with traps, compiled with these flags.
-fn trapped<M: Registered>(compiler: &str, flags: &[&str]) -> Vec<String> {
-    let program = Program::of::<M>(Target::Exact);
-    let dir = TempDir::new().expect("a folder for the program");
-    let flags = [&["-std=gnu99", "-D_GNU_SOURCE"], flags].concat();
-    let binary = compile(dir.path(), &(source(&program) + TRAPS), compiler, &flags);
-    let binary = binary.unwrap_or_else(|error| panic!("{}: {error}", program.name()));
+#[derive(Clone, Copy)]
+struct Checked<'a> {
+    compiler: &'static str,
+    flags: &'a [&'a str],
+    count: usize,
+    /// True if everyday arguments are to raise no exception.
+    traps: bool,
+}
+
+impl Checked<'_> {
+    /// Compiles the driver of a model's program.
+    fn compiled(self, program: &Program, dir: &Path) -> PathBuf {
+        let (end, flags) = if self.traps {
+            (TRAPS, [&["-D_GNU_SOURCE"], self.flags].concat())
+        } else {
+            ("", self.flags.to_vec())
+        };
+        let binary = compile(dir, &(source(program) + end), self.compiler, &flags);
+        binary.unwrap_or_else(|error| panic!("{}: {error}", program.name()))
+    }
+}
+
+impl Visitor for Checked<'_> {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        let program = Program::of::<M>(Target::Exact);
+        let dir = TempDir::new().expect("a folder for the program");
+        let binary = self.compiled(&program, dir.path());
+        let cases = Case::<M>::many(cases(self.count), 42);
+        let differ = differences(&program, &binary, &cases);
+        let name = program.name();
+        assert_eq!(differ, 0, "{name} by {}: cases that differ", self.compiler);
+        if self.traps {
+            let found = trapped::<M>(&program, &binary);
+            assert!(
+                found.is_empty(),
+                "{name} by {} {:?}: {found:?}",
+                self.compiler,
+                self.flags
+            );
+        }
+    }
+}
+
+/// Returns the calls of a model that end a host with traps on everyday arguments.
+fn trapped<M: Registered>(program: &Program, binary: &Path) -> Vec<&'static str> {
     let cases = Case::<M>::everyday(8192, 7);
     let ends = |call: &Call| {
-        let inputs: Vec<f32> = cases
-            .iter()
-            .flat_map(|case| case.arguments(*call))
-            .collect();
+        let arguments = cases.iter().flat_map(|case| case.arguments(*call));
+        let inputs: Vec<f32> = arguments.collect();
+        let mut command = Command::new(binary);
+        command.env("HAIRIS_TRAPS", "1");
         let name = program.function(*call).name();
-        !started(&binary, name, &inputs).status.success()
+        !started(command, name, &inputs).status.success()
     };
-    let found = Call::ALL.iter().filter(|call| ends(call));
-    found
-        .map(|call| format!("{} {}", program.name(), program.function(*call).name()))
-        .collect()
+    let found = Call::ALL.into_iter().filter(ends);
+    found.map(Call::name).collect()
 }
 
 #[test]
+fn c_has_the_bits_of_one_lane() {
+    if exists("gcc") {
+        visit_every_model(Checked {
+            compiler: "gcc",
+            flags: &["-std=c99", "-O1"],
+            count: 1024,
+            traps: false,
+        });
+    }
+}
+
+/// Everyday arguments raise no exception, and any arguments give the bits of one lane.
+#[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
-fn c_raises_no_exception_on_everyday_input() {
-    #[derive(Clone, Copy)]
-    struct Quiet<'a>(&'a str, &'a [&'a str]);
-    impl Visitor for Quiet<'_> {
-        type Output = ();
-        fn visit<M: Registered>(self) {
-            let found = trapped::<M>(self.0, self.1);
-            assert!(found.is_empty(), "{} {:?}: {found:?}", self.0, self.1);
-        }
-    }
+fn optimised_c_has_the_bits_of_one_lane_and_raises_no_exception() {
+    let levels: &[&str] = if is_long() { &["-O2", "-O3"] } else { &["-O2"] };
     // Clang computes unused lanes of packed numbers, unless it is told that exceptions matter.
     let clang = "-ffp-exception-behavior=maytrap";
-    for (compiler, flags) in [("gcc", &[][..]), ("clang", &[clang][..])] {
+    for (compiler, more) in [("gcc", &[][..]), ("clang", &[clang][..])] {
         if !exists(compiler) {
             continue;
         }
-        let control = trapped::<KajiyaKay>(compiler, &["-O1", "-DCONTROL"]);
+        let all = Checked {
+            compiler,
+            flags: &["-std=c99", "-DCONTROL"],
+            count: 4096,
+            traps: true,
+        };
+        let program = Program::of::<KajiyaKay>(Target::Exact);
+        let dir = TempDir::new().expect("a folder for the program");
+        let control = all.compiled(&program, dir.path());
+        let control = trapped::<KajiyaKay>(&program, &control);
         assert_eq!(
             control.len(),
             Call::ALL.len(),
             "the control raises exceptions"
         );
-        for level in ["-O2", "-O3"] {
-            let flags = [&[level], flags].concat();
-            visit_every_model(Quiet(compiler, &flags));
+        for level in levels {
+            let flags = [&["-std=c99", level], more].concat();
+            visit_code_of_models(Checked {
+                flags: &flags,
+                ..all
+            });
             println!(
                 "generated C by {compiler} {}: no exceptions",
                 flags.join(" ")
             );
+        }
+    }
+}
+
+/// Clang contracts by default if the machine has fused instructions, but the pragma in the header forbids it.
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn clang_keeps_products_and_sums_apart() {
+    let can_fuse = fusing_level().is_some() && cfg!(target_arch = "x86_64");
+    let flags: &[&str] = if can_fuse {
+        &["-O2", "-mfma"]
+    } else {
+        &["-O2"]
+    };
+    if exists("clang") {
+        visit_code_of_models(Checked {
+            compiler: "clang",
+            flags,
+            count: 4096,
+            traps: false,
+        });
+    }
+}
+
+/// The language is what differs from C, so that no level of optimisation is needed.
+#[test]
+#[ignore = "slow: .ci/shaders.sh runs it"]
+fn cpp_has_the_bits_of_one_lane() {
+    for compiler in ["g++", "clang++"] {
+        if exists(compiler) {
+            visit_code_of_models(Checked {
+                compiler,
+                flags: &["-std=c++17", "-O0", "-ffp-contract=off"],
+                count: 4096,
+                traps: false,
+            });
         }
     }
 }
@@ -279,7 +310,7 @@ fn check_gradients<M: Registered>() {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn gradients_in_c_have_the_bits_of_the_graph() {
-    every_model!(check_gradients);
+    every_model!(check_gradients, visit_code_of_models);
 }
 
 /// Control: the comparison detects contraction.

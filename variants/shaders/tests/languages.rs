@@ -145,7 +145,7 @@ fn check_glslang<M: Registered>() {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn glslang_accepts_glsl_and_hlsl() {
-    every_model!(check_glslang);
+    every_model!(check_glslang, visit_code_of_models);
 }
 
 fn check_opencl<M: Registered>() {
@@ -205,7 +205,7 @@ fn check_opencl<M: Registered>() {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn clang_compiles_opencl_and_ptx() {
-    every_model!(check_opencl);
+    every_model!(check_opencl, visit_code_of_models);
 }
 
 fn check_arithmetic<M: Registered>() {

@@ -50,10 +50,10 @@ fn execute(dir: &Path, arguments: &[&str], input: &[u8]) -> Output {
     child.wait_with_output().expect("the program ends")
 }
 
-/// Runs a function of a program that was written with its driver.
+/// Runs a function of a program that was written with its driver. As a module it is compiled once.
 fn run(dir: &TempDir, function: &str, inputs: &[f32]) -> Vec<f32> {
     let bytes: Vec<u8> = inputs.iter().flat_map(|x| x.to_le_bytes()).collect();
-    let output = execute(dir.path(), &["model.py", function], &bytes);
+    let output = execute(dir.path(), &["-m", "model", function], &bytes);
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{function}: {message}");
     let (chunks, _) = output.stdout.as_chunks::<4>();
@@ -110,7 +110,7 @@ fn check_bits<M: Registered>() {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn numpy_has_the_bits_of_one_lane() {
-    every_model!(check_bits);
+    every_model!(check_bits, visit_code_of_models);
 }
 
 /// Numbers, lists, rows and tuples are arguments; shapes broadcast, and results have the common shape.

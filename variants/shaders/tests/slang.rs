@@ -2,7 +2,7 @@
 
 use crate::gradients::Weighted;
 use crate::languages::tool;
-use crate::support::{Case, visit_every_model};
+use crate::support::{Case, is_long, visit_code_of_models};
 use crate::vulkan::{Doubles, Driver, Host};
 use hairis_conformance::cases;
 use hairis_shaders::spirv::translate;
@@ -122,7 +122,7 @@ impl Visitor for Languages {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn slang_compiles_to_every_language() {
-    visit_every_model(Languages);
+    visit_code_of_models(Languages);
 }
 
 /// Every function of the smallest model, its derivatives included.
@@ -147,8 +147,9 @@ impl Visitor for Accuracy {
         };
         let cases = Case::<M>::many(cases(4096), 45);
         let exact = Doubles::new(&cases);
-        for target in [Target::Gpu, Target::GpuNative] {
-            let program = Program::of::<M>(target);
+        let targets = [Target::Gpu, Target::GpuNative];
+        for target in &targets[..if is_long() { 2 } else { 1 }] {
+            let program = Program::of::<M>(*target);
             let calls = [Call::EvalHit, Call::SampleHit].map(|call| program.function(call));
             let source = module(&program, &calls.map(Clone::clone));
             let Some(module) = compile(&source, driver.dir.path(), None, &[]) else {
@@ -165,7 +166,7 @@ impl Visitor for Accuracy {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn modules_of_slang_have_the_accuracy_of_one_lane() {
-    visit_every_model(Accuracy);
+    visit_code_of_models(Accuracy);
 }
 
 /// Runs the derivatives of a function by the compiler of Slang, after `edit` of the module.
@@ -218,7 +219,7 @@ impl Visitor for Derivatives {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn derivatives_of_slang_are_those_of_differences() {
-    visit_every_model(Derivatives);
+    visit_code_of_models(Derivatives);
 }
 
 /// Derivatives that the compiler would have without those of the module are found.

@@ -5,6 +5,7 @@ use core::fmt;
 use hairis::model::{Model, SampleLanes, Single};
 use hairis::simd::{Level, Vec3x, f32x8};
 use hairis::{Eval, Hit, Material, Material8};
+use hairis_conformance::cases;
 use hairis_shaders::{Call, Function, numbers, parameters};
 use hairis_variants::{Field, Kind, ModelId, Parameters, Registered, Values, Visitor};
 
@@ -380,9 +381,31 @@ pub(crate) fn visit_every_model<V: Visitor + Copy>(visitor: V) {
     }
 }
 
-/// Runs a function that is generic over a model for each model of the list.
+/// Returns true with more cases than those of CI: slow tests then have every model and every arithmetic.
+pub(crate) fn is_long() -> bool {
+    cases(2) > 2
+}
+
+/// Runs a slow test on models with the code of all: both bells, both samplers, and each fibre once.
+pub(crate) fn visit_code_of_models<V: Visitor + Copy>(visitor: V) {
+    let is_twin = |id: &ModelId| {
+        let word = id.choice().map(|(_, word)| word);
+        matches!(
+            (id.name(), word),
+            ("gaussian", Some("published")) | ("cauchy", Some("matched"))
+        )
+    };
+    for id in ModelId::ALL.iter().filter(|id| is_long() || !is_twin(id)) {
+        id.visit(visitor);
+    }
+}
+
+/// Runs a function that is generic over a model for each model of the list, or for those of another function.
 macro_rules! every_model {
-    ($check:ident) => {{
+    ($check:ident) => {
+        $crate::support::every_model!($check, visit_every_model)
+    };
+    ($check:ident, $visit:ident) => {{
         #[derive(Clone, Copy)]
         struct Each;
         impl hairis_variants::Visitor for Each {
@@ -391,7 +414,7 @@ macro_rules! every_model {
                 $check::<M>();
             }
         }
-        $crate::support::visit_every_model(Each);
+        $crate::support::$visit(Each);
     }};
 }
 pub(crate) use every_model;

@@ -4,7 +4,7 @@
 use crate::gradients::Weighted;
 use crate::languages::{compile_glsl, tool, write_words};
 use crate::slang;
-use crate::support::{Case, Tally, unsigned, visit_every_model};
+use crate::support::{Case, Tally, is_long, unsigned, visit_code_of_models};
 use hairis_conformance::cases;
 use hairis_shaders::driver as shader_driver;
 use hairis_shaders::{
@@ -23,6 +23,18 @@ pub(crate) enum Host {
     Vulkan,
     /// WebGPU of Chromium: Tint and `SwiftShader`.
     Browser,
+}
+
+impl Host {
+    /// Returns those of three kinds of arithmetic that a slow test has: all where it is long, else the first in a browser, and two elsewhere.
+    fn targets(self, all: [Target; 3]) -> impl Iterator<Item = Target> {
+        let count = match self {
+            _ if is_long() => 3,
+            Self::Vulkan => 2,
+            Self::Browser => 1,
+        };
+        all.into_iter().take(count)
+    }
 }
 
 /// Host that is available on this machine, and a folder for its files.
@@ -220,7 +232,7 @@ impl Visitor for Kept<'_> {
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn shaders_that_keep_their_order_have_the_bits_of_one_lane() {
     let tally = Tally::default();
-    visit_every_model(Kept(&tally));
+    visit_code_of_models(Kept(&tally));
     tally.check();
 }
 
@@ -323,7 +335,10 @@ impl Visitor for Plain {
         };
         let cases = Case::<M>::many(cases(4096), 45);
         let exact = Doubles::new(&cases);
-        for target in [Target::Exact, Target::Gpu, Target::GpuNative] {
+        for target in self
+            .0
+            .targets([Target::Gpu, Target::Exact, Target::GpuNative])
+        {
             let mut program = Program::of::<M>(target);
             let calls = CALLS.map(|call| program.function(call).clone());
             program.keep(calls.to_vec());
@@ -340,13 +355,13 @@ impl Visitor for Plain {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn plain_shaders_have_the_accuracy_of_one_lane() {
-    visit_every_model(Plain(Host::Vulkan));
+    visit_code_of_models(Plain(Host::Vulkan));
 }
 
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn shaders_of_a_browser_have_the_accuracy_of_one_lane() {
-    visit_every_model(Plain(Host::Browser));
+    visit_code_of_models(Plain(Host::Browser));
 }
 
 #[derive(Clone, Copy)]
@@ -360,7 +375,7 @@ impl Visitor for Gradients {
             return;
         };
         let rounding = (self.0 == Host::Vulkan).then(|| driver.rounding());
-        for target in [Target::Exact, Target::Fused, Target::Gpu] {
+        for target in self.0.targets([Target::Gpu, Target::Exact, Target::Fused]) {
             let mut program = Program::of::<M>(target);
             let cases = Weighted::both::<M>(&mut program);
             let run = |module: &Path, cases: &Weighted| {
@@ -388,11 +403,11 @@ impl Visitor for Gradients {
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn gradients_of_shaders_are_those_of_differences() {
-    visit_every_model(Gradients(Host::Vulkan));
+    visit_code_of_models(Gradients(Host::Vulkan));
 }
 
 #[test]
 #[ignore = "slow: .ci/shaders.sh runs it"]
 fn gradients_in_a_browser_are_those_of_differences() {
-    visit_every_model(Gradients(Host::Browser));
+    visit_code_of_models(Gradients(Host::Browser));
 }
