@@ -5,6 +5,12 @@ use std::io;
 use std::path::Path;
 use std::process::Command;
 
+/// Returns true if a test that measures is to write its record: with `HAIRIS_RECORD=write` in the environment.
+#[must_use]
+pub fn is_asked() -> bool {
+    std::env::var("HAIRIS_RECORD").is_ok_and(|word| word == "write")
+}
+
 /// Writes a record: the processor, the commit, the date, what the rows are `about`, the names of the columns, and the rows.
 ///
 /// # Errors

@@ -176,7 +176,7 @@ fn record_of_colours_on_a_head() {
             }
         }
     }
-    if std::env::var("HAIRIS_RECORD").is_ok_and(|word| word == "write") {
+    if record::is_asked() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let path = root.join("benches/records/color-heads.csv");
         let about = "colours of twelve heads of 96 x 96 pixels and 64 samples, less those asked";

@@ -72,7 +72,7 @@ fn record_of_dual_scattering() {
             }
         }
     }
-    if std::env::var("HAIRIS_RECORD").is_ok_and(|word| word == "write") {
+    if record::is_asked() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../benches/records/dual.csv");
         let about =
             "dual scattering over paths, of 512 samples each, on pixels of 96 x 96 that show hair";

@@ -6,6 +6,7 @@ use crate::support::{film, scene};
 use glam::Vec3;
 use hairis_conformance::cases;
 use hairis_instruments::light::Constant;
+use hairis_instruments::record;
 use hairis_instruments::stats::Moments;
 use hairis_render::film::{Crop, Picture};
 use hairis_render::fit::{FitSettings, Objective, Target, Variables, fit, halves};
@@ -378,7 +379,7 @@ fn pictures_give_every_preset_back() {
                 rows.push(row);
             }
         }
-        if std::env::var("HAIRIS_RECORD").is_ok_and(|word| word == "write") {
+        if record::is_asked() {
             write_record(&rows);
         }
     }

@@ -3,6 +3,7 @@
 mod objective;
 
 use hairis_instruments::progress::Progress;
+use hairis_instruments::record;
 use hairis_study::fit::*;
 use hairis_study::study::Grid;
 use hairis_variants::Kind;
@@ -303,7 +304,7 @@ fn all_refits_are_those_recorded() {
     for pair in PAIRS {
         lines.extend(refit_lines(pair, usize::MAX));
     }
-    if std::env::var("HAIRIS_RECORD").is_ok_and(|word| word == "write") {
+    if record::is_asked() {
         std::fs::write(RECORD, lines.join("\n") + "\n").expect("the folder is ours");
     }
     let recorded = std::fs::read_to_string(RECORD).expect("the record is here");

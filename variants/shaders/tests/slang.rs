@@ -2,7 +2,7 @@
 
 use crate::gradients::Weighted;
 use crate::languages::tool;
-use crate::support::{Case, is_long, visit_code_of_models};
+use crate::support::{Case, some_targets, visit_code_of_models};
 use crate::vulkan::{Doubles, Driver, Host};
 use hairis_conformance::cases;
 use hairis_shaders::spirv::translate;
@@ -147,9 +147,8 @@ impl Visitor for Accuracy {
         };
         let cases = Case::<M>::many(cases(4096), 45);
         let exact = Doubles::new(&cases);
-        let targets = [Target::Gpu, Target::GpuNative];
-        for target in &targets[..if is_long() { 2 } else { 1 }] {
-            let program = Program::of::<M>(*target);
+        for target in some_targets([Target::Gpu, Target::GpuNative], 1) {
+            let program = Program::of::<M>(target);
             let calls = [Call::EvalHit, Call::SampleHit].map(|call| program.function(call));
             let source = module(&program, &calls.map(Clone::clone));
             let Some(module) = compile(&source, driver.dir.path(), None, &[]) else {

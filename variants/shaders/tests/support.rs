@@ -6,7 +6,7 @@ use hairis::model::{Model, SampleLanes, Single};
 use hairis::simd::{Level, Vec3x, f32x8};
 use hairis::{Eval, Hit, Material, Material8};
 use hairis_conformance::cases;
-use hairis_shaders::{Call, Function, numbers, parameters};
+use hairis_shaders::{Call, Function, Target, numbers, parameters};
 use hairis_variants::{Field, Kind, ModelId, Parameters, Registered, Values, Visitor};
 
 /// Generator of random numbers, `SplitMix64`.
@@ -384,6 +384,14 @@ pub(crate) fn visit_every_model<V: Visitor + Copy>(visitor: V) {
 /// Returns true with more cases than those of CI: slow tests then have every model and every arithmetic.
 pub(crate) fn is_long() -> bool {
     cases(2) > 2
+}
+
+/// Returns the kinds of arithmetic that a slow test has: all where it is long, and the first `count` elsewhere.
+pub(crate) fn some_targets<const N: usize>(
+    all: [Target; N],
+    count: usize,
+) -> impl Iterator<Item = Target> {
+    all.into_iter().take(if is_long() { N } else { count })
 }
 
 /// Runs a slow test on models with the code of all: both bells, both samplers, and each fibre once.

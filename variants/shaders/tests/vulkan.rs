@@ -4,7 +4,7 @@
 use crate::gradients::Weighted;
 use crate::languages::{compile_glsl, tool, write_words};
 use crate::slang;
-use crate::support::{Case, Tally, is_long, unsigned, visit_code_of_models};
+use crate::support::{Case, Tally, some_targets, unsigned, visit_code_of_models};
 use hairis_conformance::cases;
 use hairis_shaders::driver as shader_driver;
 use hairis_shaders::{
@@ -26,14 +26,13 @@ pub(crate) enum Host {
 }
 
 impl Host {
-    /// Returns those of three kinds of arithmetic that a slow test has: all where it is long, else the first in a browser, and two elsewhere.
+    /// Returns those of three kinds of arithmetic that a slow test has: fewer in a browser, which is slower.
     fn targets(self, all: [Target; 3]) -> impl Iterator<Item = Target> {
         let count = match self {
-            _ if is_long() => 3,
             Self::Vulkan => 2,
             Self::Browser => 1,
         };
-        all.into_iter().take(count)
+        some_targets(all, count)
     }
 }
 
