@@ -1,9 +1,10 @@
 // Tests against hairis-render, on hair, maps and a camera that both have: the path tracer in the browser, and direct light of three.js.
-import { execFileSync } from 'node:child_process';
+import { execFile } from 'node:child_process';
 import { readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { mkdtemp } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { promisify } from 'node:util';
 import { exr } from './maps.mjs';
 
 const SIDE = 48,
@@ -44,10 +45,10 @@ const map = exr(false, (i, row) => {
 });
 
 /// A picture of hairis-render, of hair and a map of light in files, as base64.
-function rendered(render, hair, map, flags) {
+async function rendered(render, hair, map, flags) {
   const out = map.replace('.exr', '-seen.exr');
   const scene = ['env', '--curve', 'linear', '--backdrop', '0', '--import', hair, '--env', map];
-  execFileSync(render, ['render', ...scene, ...flags.split(' '), '--out', out], { stdio: 'ignore' });
+  await promisify(execFile)(render, ['render', ...scene, ...flags.split(' '), '--out', out]);
   const bytes = readFileSync(out).toString('base64');
   // Otherwise the next picture would go on from this one.
   for (const kind of ['exr', 'png', 'part']) rmSync(out.replace(/exr$/, kind), { force: true });
@@ -90,7 +91,7 @@ export async function paths({ open, check, render }) {
     ['chiang', 'default'],
     ['gaussian', 'brown'],
   ]) {
-    const picture = rendered(
+    const picture = await rendered(
       render,
       join(folder, 'tuft.hair'),
       join(folder, 'map.exr'),
@@ -186,14 +187,16 @@ export async function direct({ open, check, render }) {
     ['chiang', 20],
   ]) {
     writeFileSync(map, sun(column));
-    const pictures = ['direct', 'dual'].map(integrator =>
-      rendered(
-        render,
-        hair,
-        map,
-        `--integrator ${integrator} --model ${model} --hair brown --spp 256 --size ${SIDE}x${SIDE}`,
-      ),
-    );
+    const pictures = [];
+    for (const integrator of ['direct', 'dual'])
+      pictures.push(
+        await rendered(
+          render,
+          hair,
+          map,
+          `--integrator ${integrator} --model ${model} --hair brown --spp 256 --size ${SIDE}x${SIDE}`,
+        ),
+      );
     const { truth, seen } = await page.evaluate(
       async ({ nodes, NODES, SIDE, model, pictures, sun: [column, row] }) => {
         const { THREE, Crossings, library, renderer, ribbons, readLight } = hairis,

@@ -69,8 +69,15 @@ export function hitOf(ray) {
 /// sixteenth of a pixel.
 export const snappedBy = ({ t }) => (t * Math.tan((FOV * Math.PI) / 360)) / (8 * SCALE * RADIUS * SIDE);
 
-/// In the browser: pixels of the scene with a material, as floats in linear light, rows from the top.
-export async function draw({
+/// Draws the scene with a material in a page, and returns its pixels in linear light, rows from the top.
+export async function draw(page, given) {
+  const { floats, forward } = await page.evaluate(drawn, given),
+    bytes = Uint8Array.from(Buffer.from(floats, 'base64'));
+  return { pixels: new Float32Array(bytes.buffer), forward };
+}
+
+/// In the browser: pixels as floats in base64, because a list of numbers takes a second.
+async function drawn({
   SCENE,
   RADIUS,
   SIDE,
@@ -112,11 +119,15 @@ export async function draw({
   renderer.setRenderTarget(target);
   renderer.render(scene, camera);
   renderer.setRenderTarget(null);
-  const pixels = Array.from(await renderer.readRenderTargetPixelsAsync(target, 0, 0, SIDE, SIDE));
+  const { buffer, byteOffset, byteLength } = await renderer.readRenderTargetPixelsAsync(target, 0, 0, SIDE, SIDE);
+  let floats = '';
+  // As many arguments as a call takes.
+  for (let at = 0; at < byteLength; at += 4096)
+    floats += String.fromCharCode(...new Uint8Array(buffer, byteOffset + at, Math.min(4096, byteLength - at)));
   const { forward } = material;
   target.dispose();
   // The material stays, so that others of its model have its shader.
-  return { pixels, forward: forward.value.toArray() };
+  return { floats: btoa(floats), forward: forward.value.toArray() };
 }
 
 /// Radiance of spherical harmonics in a direction, by their definition.

@@ -27,7 +27,7 @@ const ARGUMENTS = [
   '--enable-unsafe-webgpu',
   '--use-webgpu-adapter=swiftshader',
   '--enable-features=Vulkan',
-  '--use-angle=vulkan',
+  '--use-angle=swiftshader',
   '--use-vulkan=swiftshader',
   '--ignore-gpu-blocklist',
 ];
@@ -96,7 +96,7 @@ async function values(page, materials, check, evaluate) {
   for (const { model, values } of materials) {
     const { near } = await page.evaluate(model => ({ near: hairis.library.description(model).near_field }), model);
     for (const lines of [false, true]) {
-      const { pixels } = await page.evaluate(draw, { ...GIVEN, model, values, lines });
+      const { pixels } = await draw(page, { ...GIVEN, model, values, lines });
       const [requests, shown] = [[], []];
       for (let row = 0; row < SIDE; row++)
         for (let column = 0; column < SIDE; column++) {
@@ -176,7 +176,7 @@ async function environments(page, materials, check, evaluate) {
     }));
   let [top, scaled] = [0, false];
   for (const { model, values } of [...materials, ...clear]) {
-    const { pixels } = await page.evaluate(draw, { ...GIVEN, light: 0, harmonics: white, model, values });
+    const { pixels } = await draw(page, { ...GIVEN, light: 0, harmonics: white, model, values });
     top = pixels.reduce((most, x, at) => (at % 4 < 3 ? Math.max(most, x) : most), 0);
     check('hair returns no more than arrives', top > 0 && top <= 1 + 1e-5, `${model}: ${top}`);
   }
@@ -186,7 +186,7 @@ async function environments(page, materials, check, evaluate) {
     const [around, lit] = [
       [0, uneven],
       [2, []],
-    ].map(([light, harmonics]) => page.evaluate(draw, { ...GIVEN, light, harmonics, model, values }));
+    ].map(([light, harmonics]) => draw(page, { ...GIVEN, light, harmonics, model, values }));
     const pictures = [(await around).pixels, (await lit).pixels];
     for (const [column, row] of [
       [100, 140],
@@ -205,7 +205,7 @@ async function environments(page, materials, check, evaluate) {
           frame,
           ray.map(x => -x),
         ),
-        [rows, columns] = [32, 64],
+        [rows, columns] = [24, 48],
         near = model === 'chiang',
         wi = local(frame, SUN),
         [requests, factors] = [[{ model, params: values, wo, wi, ...(near && { h: -hit.across }) }], []];
