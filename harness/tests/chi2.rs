@@ -159,7 +159,7 @@ impl SphereCells {
     fn new(reference: &impl ReferenceSampler, mask: LobeMask, count: usize) -> Self {
         let share = reference.probabilities().0;
         let of = |lobe: Lobe| share[lobe.index()] * f64::from(mask.factor(lobe));
-        let total: f64 = Lobe::ALL.into_iter().map(of).sum();
+        let total: f64 = Lobe::FOUR.into_iter().map(of).sum();
         let inner = FRAC_PI_2 - GRAZING;
         let (mut theta, mut phi) = (
             vec![-inner, inner],
@@ -169,7 +169,7 @@ impl SphereCells {
             let even = f64::from(i) / 12.0;
             theta.push(inner * (2.0 * even - 1.0));
             phi.push(PI * (2.0 * even - 1.0));
-            for lobe in Lobe::ALL.into_iter().filter(|lobe| mask.contains(*lobe)) {
+            for lobe in Lobe::FOUR.into_iter().filter(|lobe| mask.contains(*lobe)) {
                 theta.push(reference.sample_theta(lobe, even));
                 let drawn = reference.sample_phi(lobe, even);
                 phi.push(if drawn > PI { drawn - 2.0 * PI } else { drawn });
@@ -184,7 +184,7 @@ impl SphereCells {
         tidy(&mut theta, inner);
         tidy(&mut phi, PI);
         let mut expected = vec![0.0; (theta.len() - 1) * (phi.len() - 1) + 1];
-        for lobe in Lobe::ALL.into_iter().filter(|lobe| mask.contains(*lobe)) {
+        for lobe in Lobe::FOUR.into_iter().filter(|lobe| mask.contains(*lobe)) {
             let number = count as f64 * of(lobe) / total;
             // Every cdf of phi ascends from -pi to 0 and from 0 to pi, and some cdfs jump between.
             let part = |ends: &[f64]| {
@@ -263,7 +263,7 @@ impl SphereCells {
 
 /// Returns the lobes one by one, and their mixture.
 fn masks() -> impl Iterator<Item = (String, LobeMask)> {
-    let alone = Lobe::ALL
+    let alone = Lobe::FOUR
         .into_iter()
         .map(|lobe| (format!("{lobe:?}"), LobeMask::of(&[lobe])));
     alone.chain([("mixture".to_owned(), LobeMask::ALL)])
@@ -286,7 +286,7 @@ fn check<T: ReferenceSampler>(
                 stream += 1;
                 // A Gaussian lobe so far off the sphere is cut to 0 (at 2^-115 of its peak) across its tail, so that part of its samples
                 // are discarded, as they must be.
-                let share: f64 = Lobe::ALL
+                let share: f64 = Lobe::FOUR
                     .iter()
                     .map(|l| reference.probabilities()[*l] * f64::from(mask.factor(*l)))
                     .sum();
@@ -395,7 +395,7 @@ fn every_sampler_on_the_line_follows_its_cdf() {
             let wo = wo(degrees);
             let reference =
                 HairReference::prepare(&params.desc().map(f64::from), Shape::Gaussian, double(wo));
-            for lobe in Lobe::ALL {
+            for lobe in Lobe::FOUR {
                 let mut uniform = [const { Vec::new() }; 2];
                 let stream = 9000 + lobe.index() as u64;
                 let draw = registered(ModelId::Gaussian)(&params, wo, LobeMask::of(&[lobe]));

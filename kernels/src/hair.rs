@@ -4,6 +4,7 @@ pub(crate) mod albedo;
 mod angles;
 mod bell;
 mod conserving;
+mod energy;
 mod gaussian;
 mod matched;
 mod published;
@@ -30,7 +31,7 @@ pub(crate) use view::prepare as prepare_view;
 use crate::model::lobe::times;
 use crate::model::{Eval, Hit, LobeEval, LobeMask, Model, PerLobe, Precision, SampleLanes};
 use crate::params::{HairDesc, HairParams};
-use crate::simd::{Broadcast, Lanes, Scalar, Vec3x, lanes4};
+use crate::simd::{Broadcast, Choice, Lanes, Scalar, Vec3x, lanes4};
 
 /// Cosine of the inclination below which a direction lies on the fibre's axis: there value and density are 0, and a sample is
 /// discarded (section 3.3 of the paper).
@@ -126,6 +127,20 @@ impl<B: Bell> Model for Published<B> {
             &terms,
             mix_densities(terms.density, &prepared.weight),
         )
+    }
+
+    #[inline(always)]
+    fn draw<L: Lanes, C: Broadcast<L>>(
+        prepared: &PublishedPrepared<C>,
+        xi: [L; 3],
+    ) -> (Vec3x<L>, L) {
+        let (wi, choice, _) = sampling::draw(prepared, xi);
+        (wi, choice.to_number())
+    }
+
+    #[inline(always)]
+    fn energy<L: Lanes, C: Broadcast<L>>(prepared: &PublishedPrepared<C>) -> L {
+        energy::published(prepared)
     }
 
     #[inline]

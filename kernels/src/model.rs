@@ -91,7 +91,10 @@ pub trait Model: Copy {
     }
 
     /// Returns the shading point with only the lobes of `lobes`: the others neither scatter nor are sampled.
-    fn restrict<C: Lanes>(prepared: &Self::Prepared<C>, lobes: LobeMask) -> Self::Prepared<C>;
+    fn restrict<C: Lanes + Broadcast<C>>(
+        prepared: &Self::Prepared<C>,
+        lobes: LobeMask,
+    ) -> Self::Prepared<C>;
 
     /// Evaluates S and the density of sampling at the direction `wi`.
     fn eval<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>, wi: Vec3x<L>) -> Eval<L>;
@@ -108,6 +111,32 @@ pub trait Model: Copy {
         prepared: &Self::Prepared<C>,
         xi: [L; 3],
     ) -> SampleLanes<L>;
+
+    /// Draws the direction of [`sample`](Self::sample) and the slot of its lobe, for models that add lobes to this one and evaluate both
+    /// at any direction. A direction without value and density may have any slot.
+    ///
+    /// Provided: those of `sample`, which computes more.
+    #[inline(always)]
+    fn draw<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>, xi: [L; 3]) -> (Vec3x<L>, L) {
+        let SampleLanes { wi, slot, .. } = Self::sample(prepared, xi);
+        (wi, slot)
+    }
+
+    /// Estimates the albedo of all lobes together, as the mean over the channels. Models that add lobes to this one choose between both
+    /// by their energies. Estimates use no `mul_add`, as [`restrict`](Self::restrict) calls them.
+    ///
+    /// Provided: the mean of [`albedo`](Self::albedo), which costs more than an estimate.
+    #[inline(always)]
+    fn energy<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>) -> L {
+        let PerLobe(lobes) = Self::albedo::<L, C>(prepared);
+        let (mut sum, mut lobe) = (L::splat(0.0), 0);
+        while lobe < Self::LOBES.len() {
+            let [r, g, b] = lobes[lobe];
+            sum = sum + (r + g + b) * (1.0 / 3.0);
+            lobe += 1;
+        }
+        sum
+    }
 
     /// Scales each channel of the shading point so that no more light returns than arrives, in the lanes of the mask: see
     /// [`Bsdf::conserving`](crate::Bsdf::conserving). Other lanes keep their bits.

@@ -100,7 +100,7 @@ fn weights_are_below_their_bound() {
         let params = draws.params(10.0);
         let wo = direction(draws.between(-1.5, 1.5), draws.between(-PI, PI));
         let mask = if round % 3 == 0 {
-            LobeMask::of(&[hairis::Lobe::ALL[draws.below(4)]])
+            LobeMask::of(&[hairis::Lobe::FOUR[draws.below(4)]])
         } else {
             LobeMask::ALL
         };

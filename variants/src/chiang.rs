@@ -99,14 +99,27 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
     }
 
     #[inline(always)]
+    fn energies<L: Lanes, C: Broadcast<L>>(prepared: &ChiangPrepared<C>) -> PerLobe<L> {
+        gather::mean_shares(prepared)
+    }
+
+    #[inline(always)]
     fn lobes<L: Lanes, C: Broadcast<L>>(
         prepared: &ChiangPrepared<C>,
         wi: &Direction<L>,
     ) -> PerLobe<LobeEval<L>> {
+        PerLobe::padded(Self::first_four(prepared, wi), LobeEval::none())
+    }
+
+    #[inline(always)]
+    fn first_four<L: Lanes, C: Broadcast<L>>(
+        prepared: &ChiangPrepared<C>,
+        wi: &Direction<L>,
+    ) -> [LobeEval<L>; 4] {
         let (pdf, inv_cos) = lobes::densities(prepared, wi);
         macro_rules! each {
             ($($p:literal)*) => {
-                PerLobe([$(LobeEval::new(pdf[$p] * inv_cos, gather::attenuation(prepared, $p), pdf[$p])),*])
+                [$(LobeEval::new(pdf[$p] * inv_cos, gather::attenuation(prepared, $p), pdf[$p])),*]
             };
         }
         each!(0 1 2 3)
@@ -130,6 +143,7 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
             of(prepared, 1),
             of(prepared, 2),
             of(prepared, 3),
+            [L::splat(0.0); 3],
         ])
     }
 }

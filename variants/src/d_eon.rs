@@ -67,7 +67,13 @@ impl LobeModel for DEon {
     #[inline(always)]
     fn weights<L: Lanes, C: Broadcast<L>>(prepared: &DEonPrepared<C>) -> PerLobe<L> {
         let [r, tt, trt, diffuse] = &prepared.weights;
-        PerLobe([r.lanes(), tt.lanes(), trt.lanes(), diffuse.lanes()])
+        PerLobe([
+            r.lanes(),
+            tt.lanes(),
+            trt.lanes(),
+            diffuse.lanes(),
+            L::splat(0.0),
+        ])
     }
 
     #[inline(always)]
@@ -75,6 +81,14 @@ impl LobeModel for DEon {
         prepared: &DEonPrepared<C>,
         wi: &Direction<L>,
     ) -> PerLobe<LobeEval<L>> {
+        PerLobe::padded(lobes::lobes(prepared, wi), LobeEval::none())
+    }
+
+    #[inline(always)]
+    fn first_four<L: Lanes, C: Broadcast<L>>(
+        prepared: &DEonPrepared<C>,
+        wi: &Direction<L>,
+    ) -> [LobeEval<L>; 4] {
         lobes::lobes(prepared, wi)
     }
 
@@ -105,11 +119,12 @@ impl LobeModel for DEon {
             }
         }
         let r = prepared.kept.lanes() * prepared.reflectance.lanes();
-        PerLobe([
+        let albedo = [
             [r; 3],
             passed,
             lanes3(&prepared.attenuation_trt),
             lanes3(&prepared.diffuse),
-        ])
+        ];
+        PerLobe::padded(albedo, [zero; 3])
     }
 }

@@ -30,6 +30,7 @@ mod cauchy;
 pub mod chiang;
 pub mod color;
 mod cone;
+mod cylinder;
 pub mod d_eon;
 mod hair;
 pub mod kajiya_kay;

@@ -80,10 +80,10 @@ impl Errors {
         &mut self,
         (lobes, evals): (PerLobe<LobeEval>, [Eval; 2]),
         (book, want): (PerLobe<LobeAt<f64>>, ([f64; 3], f64)),
-        (bounds, (value, pdf)): ([f64; 4], ([f64; 3], f64)),
+        (bounds, (value, pdf)): ([f64; Lobe::COUNT], ([f64; 3], f64)),
         at: &impl Fn() -> String,
     ) {
-        for lobe in Lobe::ALL {
+        for lobe in Lobe::FOUR {
             let (got, want, bound) = (&lobes[lobe], &book[lobe], bounds[lobe.index()]);
             if want.pdf > LEAST {
                 self.lobes
@@ -116,13 +116,13 @@ impl Errors {
         &mut self,
         sample: &Sample,
         (book, (value, pdf)): (PerLobe<LobeAt<f64>>, ([f64; 3], f64)),
-        (bounds, shares): ([f64; 4], PerLobe<f64>),
+        (bounds, shares): ([f64; Lobe::COUNT], PerLobe<f64>),
         at: &impl Fn() -> String,
     ) {
         let cos = f64::from(sample.wi.y).hypot(f64::from(sample.wi.z));
         for (c, (got, value)) in sample.weight.into_iter().zip(value).enumerate() {
             if cos > 1e-3 && value > LEAST {
-                let apart = Lobe::ALL.into_iter().map(|lobe| {
+                let apart = Lobe::FOUR.into_iter().map(|lobe| {
                     let of = &book[lobe];
                     (of.value * of.color[c] / value - of.pdf * shares[lobe] / pdf).abs()
                         * bounds[lobe.index()]
@@ -197,7 +197,7 @@ fn the_energy_conserving_fibre_is_as_accurate_as_its_widths_allow() {
 
         // A passage multiplies by exp(-sigma_a l), whose exponent takes six roundings; up to three passages. Without absorption
         // Fresnel's reflectance, cubed, is off by up to 2.2e-6 in forty seeds.
-        for lobe in Lobe::ALL {
+        for lobe in Lobe::FOUR {
             for c in 0..3 {
                 let (got, want) = (f64::from(bsdf.albedo()[lobe][c]), book.albedo()[lobe][c]);
                 let depth = lobe.index() as f64 * p.sigma_a[c] * book.path_length();

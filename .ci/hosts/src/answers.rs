@@ -320,7 +320,7 @@ fn at_hits<M: Model>(to: &mut Stream, material: &Material<M>) {
         let bsdf = material.prepare(Hit::new(Vec3::from(wo), h));
         points(to, &bsdf);
         columns(to, &bsdf, length);
-        let bits = length as u32 % 16;
+        let bits = length as u32 % (1 << Lobe::COUNT);
         to.word(bits);
         let kept: Vec<Lobe> = Lobe::ALL
             .into_iter()

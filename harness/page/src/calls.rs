@@ -126,7 +126,7 @@ fn albedos<M: Registered>(slot: &Slot, columns: &mut Columns, count: usize) {
         let sin = columns[0][place].clamp(-1.0, 1.0);
         let cos = libm::sqrtf((1.0 - sin) * (1.0 + sin));
         let bsdf = material.prepare(Hit::new(Vec3::new(sin, cos, 0.0), slot.hit.h));
-        let albedo = albedo(&bsdf);
+        let albedo = &albedo(&bsdf)[..M::LOBES.len()];
         for (column, number) in columns[1..].iter_mut().zip(albedo.as_flattened()) {
             column[place] = *number;
         }

@@ -142,8 +142,8 @@ pub extern "C" fn eval_hits(slot: usize, count: usize) {
     (Calls::of(slot.first()).hits)(slot, work, count.min(COLUMN));
 }
 
-/// Computes the directional albedos of all four lobes in linear RGB, for `count` inclinations of the view. The first column of `work`
-/// holds the sines of the inclinations; twelve columns follow, by lobe and channel.
+/// Computes the directional albedos of all lobes in linear RGB, for `count` inclinations of the view. The first column of `work`
+/// holds the sines of the inclinations; up to twelve columns follow, by lobe and channel.
 #[unsafe(no_mangle)]
 pub extern "C" fn albedos(slot: usize, count: usize) {
     let Memory { slots, work, .. } = memory();

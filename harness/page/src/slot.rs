@@ -77,13 +77,13 @@ impl Slot {
     pub(crate) fn restricted<M: Model>(&self, bsdf: &Bsdf<M>) -> Bsdf<M> {
         let mut chosen = [Lobe::R; Lobe::COUNT];
         let mut count = 0;
-        for lobe in Lobe::ALL {
+        for lobe in Lobe::ALL.into_iter().take(M::LOBES.len()) {
             if self.lobes >> lobe.index() & 1 == 1 {
                 chosen[count] = lobe;
                 count += 1;
             }
         }
-        if count == Lobe::COUNT {
+        if count >= M::LOBES.len() {
             *bsdf
         } else {
             bsdf.with_lobes(LobeMask::of(&chosen[..count]))

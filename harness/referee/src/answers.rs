@@ -1,6 +1,7 @@
 //! Answers of another program: cases with numbers of its own.
 
 use crate::draws::of_formulas;
+use hairis::Lobe;
 use hairis_materials::MaterialSpec;
 use hairis_materials::json::{Json, direction, number, numbers, offset, refusal};
 use hairis_reference::{Reference, exact_reference};
@@ -38,7 +39,7 @@ pub struct Answer {
     /// Numbers of the formulas.
     pub want: Numbers,
     /// Density of sampling the direction from each lobe alone, per steradian, by the formulas; 0 in slots without a lobe.
-    pub lobe_pdfs: [f64; 4],
+    pub lobe_pdfs: [f64; Lobe::COUNT],
     /// Unit directions that the program has drawn at the shading point, or `None` for each that it has discarded.
     pub samples: Vec<Option<[f64; 3]>>,
     /// Directions that the sampler of the formulas draws there, more than those of the program.

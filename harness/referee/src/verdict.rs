@@ -5,6 +5,7 @@ use crate::integrals::{Estimate, by_scene};
 use crate::samples::{self, Drawn};
 use core::f64::consts::PI;
 use core::fmt;
+use hairis::Lobe;
 
 /// Share of the largest number of a shading point below which a number is not judged by its ratio.
 const FAINT: f64 = 1e-6;
@@ -331,7 +332,7 @@ fn mixture(answers: &Answers) -> Option<f64> {
     let mut ratios = Vec::new();
     for scene in answers.scenes() {
         // Least squares of relative errors: the equations are those of the lobes' densities over that of the program.
-        let mut equations = [[0.0; 5]; 4];
+        let mut equations = [[0.0; Lobe::COUNT + 1]; Lobe::COUNT];
         let parts = |answer: &Answer| {
             let pdf = answer.got.pdf?;
             Some(
@@ -354,7 +355,7 @@ fn mixture(answers: &Answers) -> Option<f64> {
         if !is_mixture || scene.len() < 8 {
             return None;
         }
-        let mixed = |parts: [f64; 4]| {
+        let mixed = |parts: [f64; Lobe::COUNT]| {
             parts
                 .iter()
                 .zip(probabilities)
@@ -366,16 +367,17 @@ fn mixture(answers: &Answers) -> Option<f64> {
     Some(errors(ratios.into_iter().map(|ratio| 1.0 / ratio))[0])
 }
 
-/// Solves four equations whose matrix is symmetric and not negative, by elimination. A lobe without density of its own gets 0.
-fn solved(mut rows: [[f64; 5]; 4]) -> [f64; 4] {
+/// Solves an equation per lobe, whose matrix is symmetric and not negative, by elimination. A lobe without density of its own gets 0.
+fn solved(mut rows: [[f64; Lobe::COUNT + 1]; Lobe::COUNT]) -> [f64; Lobe::COUNT] {
     // Densities of lobes that are hardly ever chosen are many orders of magnitude larger than their mixture: scale all of them to 1.
-    let scale: [f64; 4] = core::array::from_fn(|k| rows[k][k].max(f64::MIN_POSITIVE).sqrt());
+    let scale: [f64; Lobe::COUNT] =
+        core::array::from_fn(|k| rows[k][k].max(f64::MIN_POSITIVE).sqrt());
     for (row, own) in rows.iter_mut().zip(scale) {
         for (x, other) in row.iter_mut().zip(scale.into_iter().chain([1.0])) {
             *x /= own * other;
         }
     }
-    for k in 0..4 {
+    for k in 0..Lobe::COUNT {
         let pivot = rows[k];
         for (n, row) in rows.iter_mut().enumerate() {
             let factor = if n == k || pivot[k] < SINGULAR {
@@ -389,7 +391,7 @@ fn solved(mut rows: [[f64; 5]; 4]) -> [f64; 4] {
         }
     }
     core::array::from_fn(|k| {
-        let [x, pivot] = [rows[k][4], rows[k][k]];
+        let [x, pivot] = [rows[k][Lobe::COUNT], rows[k][k]];
         if pivot < SINGULAR {
             0.0
         } else {

@@ -19,12 +19,13 @@ pub(crate) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>) -> 
     );
     // The azimuthal term of R and TRT-g, cos(phi / 2), has an area of 4.
     let area = inclinations::<B, L, C, _>(view, &GRADED);
-    PerLobe([
+    let lobes = [
         lobe(view, 0, area[0] * 4.0, r),
         lobe(view, 1, area[1] * hair.azimuth_area[0].lanes(), tt),
         lobe(view, 2, area[2] * 4.0, trt),
         lobe(view, 3, area[2] * hair.azimuth_area[1].lanes(), trt),
-    ])
+    ];
+    PerLobe::padded(lobes, [L::splat(0.0); 3])
 }
 
 #[inline(always)]

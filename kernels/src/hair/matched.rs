@@ -14,14 +14,14 @@ use prepared::MatchedPrepared;
 
 use crate::hair::conserving::{self, AlbedoFit};
 use crate::hair::{
-    Angles, LobeTerms, albedo, finish_eval, finish_lobes, finish_sample, mix_densities,
+    Angles, LobeTerms, albedo, energy, finish_eval, finish_lobes, finish_sample, mix_densities,
 };
 use crate::model::lobe::times;
 use crate::model::{Eval, Hit, LobeEval, LobeMask, Model, PerLobe, Precision, SampleLanes};
 use crate::params::{HairDesc, HairParams};
 use crate::simd::pair::Pair;
 use crate::simd::portable::Unfused;
-use crate::simd::{Broadcast, Lanes, Scalar, Vec3x};
+use crate::simd::{Broadcast, Choice, Lanes, Scalar, Vec3x};
 
 /// The model of [`Published`](crate::Published), with the same parameters, values and albedo, but with a sampler of lower variance
 /// that follows the values more closely.
@@ -187,6 +187,20 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
             &terms,
             density(prepared, &angles, &terms),
         )
+    }
+
+    #[inline(always)]
+    fn draw<L: Lanes, C: Broadcast<L>>(
+        prepared: &MatchedPrepared<C, BANDS>,
+        xi: [L; 3],
+    ) -> (Vec3x<L>, L) {
+        let (wi, choice, _) = sampling::draw::<B, L, C, BANDS>(prepared, xi);
+        (wi, choice.to_number())
+    }
+
+    #[inline(always)]
+    fn energy<L: Lanes, C: Broadcast<L>>(prepared: &MatchedPrepared<C, BANDS>) -> L {
+        energy::sum(&prepared.view, prepared.extents::<B, L>())
     }
 
     #[inline]

@@ -77,7 +77,7 @@ pub(crate) fn finish_lobes<L: Lanes, C: Broadcast<L>>(
         lobes[l] = LobeEval::new((terms.value[l] * strength).min(limit), colors[l], pdf);
         l += 1;
     }
-    PerLobe(lobes)
+    PerLobe::padded(lobes, LobeEval::none())
 }
 
 /// Computes the sample `wi` of the lobe `choice`; `density` is that of the mixture times `cos theta_i`.

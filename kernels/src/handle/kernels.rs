@@ -74,8 +74,8 @@ at_bsdf! {
 at_bsdf! {
     /// Each lobe's value, colour and density at eight directions.
     Lobes(wi: &Vec3x8) -> PerLobe<LobeEval8>, M L C prepared {
-        let [a, b, c, d] = M::lobes::<L, C>(prepared, Vec3x::load_fresh(wi)).0;
-        PerLobe([a.store(), b.store(), c.store(), d.store()])
+        let [a, b, c, d, e] = M::lobes::<L, C>(prepared, Vec3x::load_fresh(wi)).0;
+        PerLobe([a.store(), b.store(), c.store(), d.store(), e.store()])
     }
 }
 at_bsdf! {
@@ -94,8 +94,8 @@ impl<M: Model> Kernel for Albedo<'_, M> {
 
     #[inline(always)]
     fn run<L: Lanes<Stored = f32x8>>(self) -> PerLobe<[f32x8; 3]> {
-        let [a, b, c, d] = M::albedo::<L, f32x8>(self.prepared).0;
-        PerLobe([store3(a), store3(b), store3(c), store3(d)])
+        let [a, b, c, d, e] = M::albedo::<L, f32x8>(self.prepared).0;
+        PerLobe([store3(a), store3(b), store3(c), store3(d), store3(e)])
     }
 }
 

@@ -94,8 +94,21 @@ impl<M: Model> Model for Conserving<M> {
     }
 
     #[inline(always)]
-    fn restrict<C: Lanes>(prepared: &M::Prepared<C>, lobes: LobeMask) -> M::Prepared<C> {
+    fn restrict<C: Lanes + Broadcast<C>>(
+        prepared: &M::Prepared<C>,
+        lobes: LobeMask,
+    ) -> M::Prepared<C> {
         M::restrict(prepared, lobes)
+    }
+
+    #[inline(always)]
+    fn draw<L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>, xi: [L; 3]) -> (Vec3x<L>, L) {
+        M::draw(prepared, xi)
+    }
+
+    #[inline(always)]
+    fn energy<L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>) -> L {
+        M::energy(prepared)
     }
 
     #[inline(always)]

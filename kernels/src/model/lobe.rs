@@ -3,7 +3,7 @@
 use crate::simd::Lanes;
 use core::ops::{Index, IndexMut};
 
-/// One lobe of a scattering model: a slot from 0 to 3.
+/// One lobe of a scattering model: a slot from 0 to 4.
 ///
 /// The constants name the lobes of the published model. A model with other lobes names its own slots, for instance
 /// `const DIFFUSE: Lobe = Lobe::slot(0)`, and lists them in [`Model::LOBES`](crate::model::Model::LOBES).
@@ -12,7 +12,7 @@ pub struct Lobe(u8);
 
 impl Lobe {
     /// Number of slots that a model has for lobes.
-    pub const COUNT: usize = 4;
+    pub const COUNT: usize = 5;
     /// Reflection off the surface of the fibre: the primary highlight.
     pub const R: Self = Self(0);
     /// Transmission through the fibre: the light seen on hair lit from behind.
@@ -21,20 +21,22 @@ impl Lobe {
     pub const TRT: Self = Self(2);
     /// The two glints of the secondary highlight, which share its longitudinal term.
     pub const GLINT: Self = Self(3);
-    /// Every slot, in slot order.
-    pub const ALL: [Self; Self::COUNT] = [Self::R, Self::TT, Self::TRT, Self::GLINT];
+    /// Lobes of the published model, and slots of any model of four lobes, in slot order.
+    pub const FOUR: [Self; 4] = [Self::R, Self::TT, Self::TRT, Self::GLINT];
+    /// Every slot, in slot order. The last one is that of a lobe beside four others.
+    pub const ALL: [Self; Self::COUNT] = [Self::R, Self::TT, Self::TRT, Self::GLINT, Self::slot(4)];
 
     /// Returns the lobe in slot `index`.
     ///
     /// # Panics
     ///
-    /// Panics if `index` is above 3. In a constant, which is the intended use, this is an error at compile time.
+    /// Panics if `index` is above 4. In a constant, which is the intended use, this is an error at compile time.
     #[inline]
     #[must_use]
     pub const fn slot(index: u8) -> Self {
         assert!(
             (index as usize) < Self::COUNT,
-            "a lobe slot is 0, 1, 2 or 3"
+            "a lobe slot is 0, 1, 2, 3 or 4"
         );
         Self(index)
     }
@@ -64,14 +66,14 @@ impl<T: Copy> PerLobe<T> {
     #[inline(always)]
     #[must_use]
     pub fn padded<const N: usize>(values: [T; N], rest: T) -> Self {
-        const { assert!(N <= Lobe::COUNT, "a model has at most 4 lobes") };
+        const { assert!(N <= Lobe::COUNT, "a model has at most 5 lobes") };
         // Written out, because compilers that optimise for size keep loops, and with them the array in memory.
         macro_rules! slots {
             ($($l:literal)*) => {
                 [$(if const { $l < N } { values[const { if $l < N { $l } else { 0 } }] } else { rest }),*]
             };
         }
-        Self(slots!(0 1 2 3))
+        Self(slots!(0 1 2 3 4))
     }
 }
 
@@ -107,8 +109,8 @@ impl<T> IndexMut<Lobe> for PerLobe<T> {
 pub struct LobeMask(u8);
 
 impl LobeMask {
-    /// Set of all four lobes.
-    pub const ALL: Self = Self(0b1111);
+    /// Set of all lobes.
+    pub const ALL: Self = Self(0b1_1111);
     /// Empty set: the BSDF evaluates to zero, and every sample is discarded.
     pub const NONE: Self = Self(0);
 
@@ -141,10 +143,10 @@ impl LobeMask {
 }
 
 impl LobeMask {
-    /// Returns the [`factor`](Self::factor) of each lobe.
+    /// Returns the [`factor`](Self::factor) of each of the first four lobes.
     #[inline(always)]
-    pub(crate) fn factors<C: Lanes>(self) -> [C; Lobe::COUNT] {
-        Lobe::ALL.map(|lobe| C::splat(self.factor(lobe)))
+    pub(crate) fn factors<C: Lanes>(self) -> [C; 4] {
+        Lobe::FOUR.map(|lobe| C::splat(self.factor(lobe)))
     }
 }
 

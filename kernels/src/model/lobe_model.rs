@@ -4,7 +4,7 @@ mod mixture;
 
 use mixture::Mixture;
 
-use crate::model::lobe::{Lobe, PerLobe, times};
+use crate::model::lobe::{PerLobe, times};
 use crate::model::{Direction, Eval, Hit, LobeEval, LobeMask, Model, SampleLanes};
 use crate::simd::{Broadcast, Choice, LaneStruct, Lanes, Scalar, Vec3x, lanes3};
 use wide::f32x8;
@@ -117,11 +117,31 @@ pub trait LobeModel: Copy {
     /// Returns the sampling weight of each lobe, to any common scale, and 0 for slots without a lobe.
     fn weights<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>) -> PerLobe<L>;
 
+    /// Estimates the albedo of each lobe, as the mean over the channels: see [`Model::energy`].
+    ///
+    /// Provided: the [`weights`](Self::weights), for models whose weights are such estimates.
+    #[inline(always)]
+    fn energies<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>) -> PerLobe<L> {
+        Self::weights(prepared)
+    }
+
     /// Evaluates each lobe's value, colour and own density at a direction.
     fn lobes<L: Lanes, C: Broadcast<L>>(
         prepared: &Self::Prepared<C>,
         wi: &Direction<L>,
     ) -> PerLobe<LobeEval<L>>;
+
+    /// Evaluates the lobes of [`lobes`](Self::lobes) without the slots that a `LobeModel` leaves empty.
+    ///
+    /// Provided: those of `lobes`. Models with four lobes may construct the array here, which spares compilers the empty slot.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn first_four<L: Lanes, C: Broadcast<L>>(
+        prepared: &Self::Prepared<C>,
+        wi: &Direction<L>,
+    ) -> [LobeEval<L>; 4] {
+        four(Self::lobes(prepared, wi))
+    }
 
     /// Draws a direction from the lobe of each lane. All three numbers are uniform in `[0, 1)`: the first has chosen the lobe, and
     /// is stretched to the whole interval again.
@@ -162,6 +182,8 @@ crate::simd::lane_struct! {
     prepared: P, mixture: Mixture<C>
 }
 
+/// Largest number of lobes.
+const MOST: usize = 4;
 /// Density below which a sample is discarded, because close to denormals its weight would have no digits.
 const LEAST_DENSITY: f32 = 1e-30;
 /// Largest uniform number below 1.
@@ -174,7 +196,8 @@ fn total<M: LobeModel, L: Lanes, C: Broadcast<L>>(
     wi: &Direction<L>,
     least: L,
 ) -> Eval<L> {
-    let (PerLobe(lobes), mixture) = (M::lobes(&prepared.prepared, wi), &prepared.mixture);
+    let mixture = &prepared.mixture;
+    let lobes = M::first_four(&prepared.prepared, wi);
     L::stage("value and density: sums over the lobes, 0 where wi is no direction");
     let value = lobes[0].value * mixture.kept[0].lanes();
     let [r, g, b] = lobes[0].color;
@@ -208,6 +231,47 @@ fn total<M: LobeModel, L: Lanes, C: Broadcast<L>>(
     }
 }
 
+/// Draws the direction of a sample and its lobe, and returns whether the numbers are numbers.
+#[inline(always)]
+fn drawn<M: LobeModel, L: Lanes, C: Broadcast<L>>(
+    prepared: &Mixed<M::Prepared<C>, C>,
+    xi: [L; 3],
+) -> (Direction<L>, L::Index, L::Mask) {
+    let c = L::splat;
+    let (zero, most) = (c(0.0), c(BELOW_ONE));
+    L::stage("lobe that xi.x selects, and xi.x stretched to [0, 1) again");
+    let m = &prepared.mixture;
+    let lobe = L::Index::search(xi[0], lanes3(&m.bounds), M::LOBES.len() - 1);
+    // From the nearer end, where differences are exact: a rare lobe keeps the low bits.
+    let (start, start_less_one) = (
+        C::look_up(&m.start, lobe),
+        C::look_up(&m.start_less_one, lobe),
+    );
+    let into = L::select(
+        xi[0].lt(c(0.5)),
+        xi[0] - start,
+        (xi[0] - 1.0) - start_less_one,
+    );
+    // A lobe without energy has no share.
+    let share = C::look_up(&m.selection, lobe).max(c(f32::MIN_POSITIVE));
+    let again = L::quotient(into, share);
+    // False for NaN.
+    let numbers = (xi[0] + xi[1] + xi[2]).lt(c(f32::INFINITY));
+    let xi = [
+        zero.max(again.min(most)),
+        zero.max(xi[1].min(most)),
+        zero.max(xi[2].min(most)),
+    ];
+    let wi = M::sample_lobe(&prepared.prepared, lobe, xi);
+    (wi, lobe, numbers)
+}
+
+/// Returns the numbers of the slots that a `LobeModel` may have.
+#[inline(always)]
+fn four<L>(PerLobe([a, b, c, d, _]): PerLobe<L>) -> [L; MOST] {
+    [a, b, c, d]
+}
+
 /// Returns the largest result where a lane is sound, and 0 where it is not.
 #[inline(always)]
 fn limit<L: Lanes>(sound: L::Mask) -> L {
@@ -236,8 +300,8 @@ impl<M: LobeModel> Model for M {
     const CONSERVES: bool = M::CONSERVES;
     const LOBES: &'static [&'static str] = {
         assert!(
-            !M::LOBES.is_empty() && M::LOBES.len() <= Lobe::COUNT,
-            "a model has 1 to 4 lobes"
+            !M::LOBES.is_empty() && M::LOBES.len() <= MOST,
+            "a `LobeModel` has 1 to 4 lobes"
         );
         M::LOBES
     };
@@ -267,7 +331,7 @@ impl<M: LobeModel> Model for M {
         let prepared = <M as LobeModel>::prepare(material, Hit::new(wo, hit.h));
         L::stage("probability of each lobe");
         let kept = L::keep(finite, one);
-        let mixture = Mixture::new(M::weights::<L, L::Stored>(&prepared).0, [kept; 4]).store();
+        let mixture = Mixture::new(four(M::weights::<L, L::Stored>(&prepared)), [kept; 4]).store();
         Mixed { prepared, mixture }
     }
 
@@ -309,6 +373,8 @@ impl<M: LobeModel> Model for M {
             lobes.0[l].pdf = within(lobes.0[l].pdf * kept, limit);
             l += 1;
         }
+        // A constant, so that it costs nothing.
+        lobes.0[MOST] = LobeEval::none();
         lobes
     }
 
@@ -318,31 +384,7 @@ impl<M: LobeModel> Model for M {
         xi: [L; 3],
     ) -> SampleLanes<L> {
         let c = L::splat;
-        let (zero, most) = (c(0.0), c(BELOW_ONE));
-        L::stage("lobe that xi.x selects, and xi.x stretched to [0, 1) again");
-        let m = &prepared.mixture;
-        let lobe = L::Index::search(xi[0], lanes3(&m.bounds), M::LOBES.len() - 1);
-        // From the nearer end, where differences are exact: a rare lobe keeps the low bits.
-        let (start, start_less_one) = (
-            C::look_up(&m.start, lobe),
-            C::look_up(&m.start_less_one, lobe),
-        );
-        let into = L::select(
-            xi[0].lt(c(0.5)),
-            xi[0] - start,
-            (xi[0] - 1.0) - start_less_one,
-        );
-        // A lobe without energy has no share.
-        let share = C::look_up(&m.selection, lobe).max(c(f32::MIN_POSITIVE));
-        let again = L::quotient(into, share);
-        // False for NaN.
-        let numbers = (xi[0] + xi[1] + xi[2]).lt(c(f32::INFINITY));
-        let xi = [
-            zero.max(again.min(most)),
-            zero.max(xi[1].min(most)),
-            zero.max(xi[2].min(most)),
-        ];
-        let wi = M::sample_lobe(&prepared.prepared, lobe, xi);
+        let (wi, lobe, numbers) = drawn::<M, L, C>(prepared, xi);
         // A divisor, and so above 0.
         let least = c(LEAST_DENSITY);
         let Eval { value, pdf } = total::<M, L, C>(prepared, &wi, least);
@@ -361,18 +403,40 @@ impl<M: LobeModel> Model for M {
     }
 
     #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &Mixed<M::Prepared<C>, C>) -> PerLobe<[L; 3]> {
-        let mut albedo = <M as LobeModel>::albedo::<L, C>(&prepared.prepared);
-        let most = L::splat(f32::MAX);
-        let mut l = 0;
-        while l < Lobe::COUNT {
+    fn draw<L: Lanes, C: Broadcast<L>>(
+        prepared: &Mixed<M::Prepared<C>, C>,
+        xi: [L; 3],
+    ) -> (Vec3x<L>, L) {
+        let (wi, lobe, _) = drawn::<M, L, C>(prepared, xi);
+        (wi.vector, lobe.to_number())
+    }
+
+    #[inline(always)]
+    fn energy<L: Lanes, C: Broadcast<L>>(prepared: &Mixed<M::Prepared<C>, C>) -> L {
+        let energies = four(M::energies::<L, C>(&prepared.prepared));
+        let most = L::splat(f32::MAX / 8.0);
+        let (mut sum, mut l) = (L::splat(0.0), 0);
+        while l < M::LOBES.len() {
             let kept: L = prepared.mixture.kept[l].lanes();
-            // Finite first: 0 times an infinity is NaN.
-            let [r, g, b] = min3(albedo.0[l], most);
-            albedo.0[l] = [r * kept, g * kept, b * kept];
+            sum = sum + energies[l].min(most) * kept;
             l += 1;
         }
-        albedo
+        sum
+    }
+
+    #[inline(always)]
+    fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &Mixed<M::Prepared<C>, C>) -> PerLobe<[L; 3]> {
+        let mut albedo = four(<M as LobeModel>::albedo::<L, C>(&prepared.prepared));
+        let most = L::splat(f32::MAX);
+        let mut l = 0;
+        while l < MOST {
+            let kept: L = prepared.mixture.kept[l].lanes();
+            // Finite first: 0 times an infinity is NaN.
+            let [r, g, b] = min3(albedo[l], most);
+            albedo[l] = [r * kept, g * kept, b * kept];
+            l += 1;
+        }
+        PerLobe::padded(albedo, [L::splat(0.0); 3])
     }
 }
 
@@ -383,7 +447,7 @@ fn sampled_albedo<M: LobeModel, L: Lanes, C: Broadcast<L>>(
 ) -> PerLobe<[L; 3]> {
     const STEPS: u16 = 1024;
     let c = L::splat;
-    let mut albedo = [[c(0.0); 3]; Lobe::COUNT];
+    let mut albedo = [[c(0.0); 3]; MOST];
     let mut l = 0;
     while l < M::LOBES.len() {
         let lobe = L::Index::search(c([0.0, 1.0, 2.0, 3.0][l]), [c(1.0), c(2.0), c(3.0)], 3);
@@ -415,7 +479,7 @@ fn sampled_albedo<M: LobeModel, L: Lanes, C: Broadcast<L>>(
         albedo[l] = [color[0] * mean, color[1] * mean, color[2] * mean];
         l += 1;
     }
-    PerLobe(albedo)
+    PerLobe::padded(albedo, [c(0.0); 3])
 }
 
 /// Returns the fractional part of `(step + 1/2) ratio / 2^32`, in integers, because `floor` would be a call in every step.

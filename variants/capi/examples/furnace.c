@@ -37,9 +37,9 @@ int main(void) {
     if (hairis_sample_columns(&bsdf, SAMPLES, (const float *const[3]){xi[0], xi[1], xi[2]}, &to)) return 1;
     double furnace = 0, albedo = 0;
     for (int i = 0; i < SAMPLES; ++i) furnace += weight[0][i] / SAMPLES;
-    float lobes[4][3];
+    float lobes[HAIRIS_LOBES][3];
     hairis_albedo(&bsdf, lobes);
-    for (int lobe = 0; lobe < 4; ++lobe) albedo += lobes[lobe][0];
+    for (int lobe = 0; lobe < HAIRIS_LOBES; ++lobe) albedo += lobes[lobe][0];
     printf("%-11s %-10s %9.5f %9.5f\n", info.name, info.word, furnace, albedo);
     bad |= !(fabs(furnace / albedo - 1) < 0.01);
   }

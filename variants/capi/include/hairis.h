@@ -42,6 +42,7 @@ extern "C" {
 #define HAIRIS_MATERIAL_SIZE 1536
 #define HAIRIS_BSDF_SIZE 1024
 #define HAIRIS_NUMBERS 48
+#define HAIRIS_LOBES 5 /* slots of lobes; a model with fewer leaves the others 0 */
 
 typedef int32_t hairis_status;
 enum {
@@ -76,7 +77,7 @@ typedef struct hairis_model_info {
   char name[32];   /* "gaussian", "cauchy", "kajiya-kay", "chiang", "d-eon"; entries with other samplers share it */
   char choice[32]; /* the field that selects among them, "" if there is one entry */
   char word[32];   /* the word of that field that selects this entry */
-  char lobe_names[4][16];
+  char lobe_names[HAIRIS_LOBES][16];
   uint32_t lobes, fields, presets;
   uint32_t near_field; /* 1: the model reads h */
   uint32_t is_default; /* 1: the first entry of its name */
@@ -213,11 +214,11 @@ void hairis_frame(const float tangent[3], const float normal[3] /* or NULL */, f
 float hairis_offset(const float frame[9], const float normal[3], const float wo[3]);
 void hairis_prepare(hairis_bsdf *to, const hairis_material *material, float u, float v, float w, float h);
 void hairis_restrict(hairis_bsdf *bsdf, uint32_t lobes);
-void hairis_albedo(const hairis_bsdf *bsdf, float to[4][3]);
+void hairis_albedo(const hairis_bsdf *bsdf, float to[HAIRIS_LOBES][3]);
 
 /* Functions on one direction. The xi are uniform numbers in [0, 1). */
 hairis_eval_result hairis_eval_pdf(const hairis_bsdf *bsdf, float u, float v, float w);
-void hairis_lobes(const hairis_bsdf *bsdf, float u, float v, float w, hairis_lobe_result to[4]);
+void hairis_lobes(const hairis_bsdf *bsdf, float u, float v, float w, hairis_lobe_result to[HAIRIS_LOBES]);
 hairis_sample_result hairis_sample(const hairis_bsdf *bsdf, float xi_lobe, float xi_theta, float xi_phi);
 
 /* Functions on n directions at one hit. */

@@ -205,14 +205,14 @@ class Bsdf {
     if (s.lobe < 0) return std::nullopt;
     return s;
   }
-  std::array<hairis_lobe_result, 4> lobes(std::array<float, 3> wi) const noexcept {
-    std::array<hairis_lobe_result, 4> to;
+  std::array<hairis_lobe_result, HAIRIS_LOBES> lobes(std::array<float, 3> wi) const noexcept {
+    std::array<hairis_lobe_result, HAIRIS_LOBES> to;
     hairis_lobes(&bsdf_, wi[0], wi[1], wi[2], to.data());
     return to;
   }
   /// Returns the directional albedo of all lobes together.
   std::array<float, 3> albedo() const noexcept {
-    float lobes[4][3];
+    float lobes[HAIRIS_LOBES][3];
     hairis_albedo(&bsdf_, lobes);
     std::array<float, 3> sum{};
     for (auto &lobe : lobes) {

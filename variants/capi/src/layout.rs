@@ -60,6 +60,8 @@ constants! {
     BSDF_SIZE: usize = 1024, "HAIRIS_BSDF_SIZE";
     /// Largest count of numbers of a model.
     NUMBERS: usize = 48, "HAIRIS_NUMBERS";
+    /// Slots of lobes.
+    LOBES: usize = 5, "HAIRIS_LOBES";
     /// Status of a call that succeeded.
     OK: i32 = 0, "HAIRIS_OK";
     /// Status if there is no such model, choice, preset, field or word.
@@ -116,7 +118,7 @@ structs! {
         /// Word of that field that selects this entry.
         word: [c_char; 32],
         /// Names of the lobes, by slot.
-        lobe_names: [[c_char; 16]; 4],
+        lobe_names: [[c_char; 16]; LOBES],
         /// Number of lobes.
         lobes: u32,
         /// Number of fields.

@@ -1,7 +1,7 @@
 //! Calls on one hit and on one direction: they take numbers and return structs by value.
 
 use crate::handles::{bsdf, material, model_of, place};
-use crate::layout::{EvalResult, LobeResult, RawBsdf, RawMaterial, SampleResult};
+use crate::layout::{EvalResult, LOBES, LobeResult, RawBsdf, RawMaterial, SampleResult};
 use crate::models::{tag, visit};
 use glam::Vec3;
 use hairis::{FiberFrame, Hit, Lobe, LobeMask, PerLobe};
@@ -89,7 +89,7 @@ pub unsafe extern "C" fn hairis_restrict(raw: *mut RawBsdf, lobes: u32) {
 
 /// Implements `hairis_albedo`: computes the directional albedo of each lobe.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn hairis_albedo(raw: *const RawBsdf, to: *mut [[f32; 3]; 4]) {
+pub unsafe extern "C" fn hairis_albedo(raw: *const RawBsdf, to: *mut [[f32; 3]; LOBES]) {
     // SAFETY: the caller's promise.
     let id = unsafe { model_of(raw) };
     let albedo = id.map(|id| {
@@ -129,12 +129,12 @@ pub unsafe extern "C" fn hairis_lobes(
     u: f32,
     v: f32,
     w: f32,
-    to: *mut [LobeResult; 4],
+    to: *mut [LobeResult; LOBES],
 ) {
     // SAFETY: the caller's promise.
     let id = unsafe { model_of(raw) };
     let lobes = id.map(|id| {
-        visit!(id, M, (raw: *const RawBsdf, u: f32, v: f32, w: f32) -> [LobeResult; 4], {
+        visit!(id, M, (raw: *const RawBsdf, u: f32, v: f32, w: f32) -> [LobeResult; LOBES], {
             // SAFETY: the tag is the model's.
             let PerLobe(lobes) = unsafe { bsdf::<M>(raw) }.lobes(Vec3::new(u, v, w));
             lobes.map(|lobe| LobeResult { value: lobe.value, color: lobe.color, pdf: lobe.pdf })

@@ -3,7 +3,7 @@
 use crate::handles::{init, material, model_of};
 use crate::layout::{
     ABI_VERSION, ARGUMENT, ENERGY_CONSERVING, ENERGY_RAW, ENERGY_SCALED, Error, FieldInfo,
-    KIND_NUMBER, KIND_NUMBERS, KIND_RGB, KIND_WORD, ModelInfo, NAME, NUMBERS, OK, Params,
+    KIND_NUMBER, KIND_NUMBERS, KIND_RGB, KIND_WORD, LOBES, ModelInfo, NAME, NUMBERS, OK, Params,
     RawMaterial, VALUE,
 };
 use crate::models::{self, Subject, visit};
@@ -61,7 +61,7 @@ pub unsafe extern "C" fn hairis_model_describe(model: u32, to: *mut ModelInfo) -
     };
     let id = subject.id;
     let (choice, word) = id.choice().unwrap_or_default();
-    let mut lobe_names = [[0; 16]; 4];
+    let mut lobe_names = [[0; 16]; LOBES];
     for (to, name) in lobe_names.iter_mut().zip(id.lobes()) {
         *to = array(name);
     }

@@ -112,7 +112,7 @@ static int material(hairis_material *to) {
 }
 
 static void points(const hairis_bsdf *bsdf) {
-  float albedo[4][3];
+  float albedo[HAIRIS_LOBES][3];
   hairis_albedo(bsdf, albedo);
   same(albedo, sizeof albedo, "hairis_albedo");
   for (int i = 0; i < 12; ++i) {
@@ -121,7 +121,7 @@ static void points(const hairis_bsdf *bsdf) {
     memcpy(xi, take(12), 12);
     hairis_eval_result eval = hairis_eval_pdf(bsdf, wi[0], wi[1], wi[2]);
     same(&eval, sizeof eval, "hairis_eval_pdf");
-    hairis_lobe_result lobes[4];
+    hairis_lobe_result lobes[HAIRIS_LOBES];
     hairis_lobes(bsdf, wi[0], wi[1], wi[2], lobes);
     same(lobes, sizeof lobes, "hairis_lobes");
     hairis_sample_result s = hairis_sample(bsdf, xi[0], xi[1], xi[2]);

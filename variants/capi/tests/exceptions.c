@@ -51,9 +51,9 @@ static void calls(const hairis_material *hair) {
   static float numbers[24][WIDTH];
   float total = 0;
   for (int i = 0; i < HITS; ++i) {
-    float wo[3], wi[3], frame[9], tangent[3], normal[3], lobes[4][3], h = 2 * uniform() - 1;
+    float wo[3], wi[3], frame[9], tangent[3], normal[3], lobes[HAIRIS_LOBES][3], h = 2 * uniform() - 1;
     hairis_bsdf bsdf;
-    hairis_lobe_result each[4];
+    hairis_lobe_result each[HAIRIS_LOBES];
     hairis_eval_result eval;
     hairis_sample_result sample;
     hairis_choice choice[4];

@@ -221,8 +221,8 @@ static void dual(void) {
 static void scatters_nothing(const hairis_material *material, hairis_bsdf *bsdf, const char *what) {
   hairis_eval_result eval = hairis_eval_pdf(bsdf, 0, 1, 0);
   hairis_sample_result sample = hairis_sample(bsdf, 0.5f, 0.5f, 0.5f);
-  hairis_lobe_result lobes[4];
-  float albedo[4][3];
+  hairis_lobe_result lobes[HAIRIS_LOBES];
+  float albedo[HAIRIS_LOBES][3];
   hairis_lobes(bsdf, 0, 1, 0, lobes);
   hairis_albedo(bsdf, albedo);
   hairis_restrict(bsdf, 1);

@@ -176,7 +176,7 @@ pub fn lanes_permute(subject: &dyn ErasedSubject) -> Outcome {
 }
 
 /// Returns the bits of a lane of lobes.
-fn lobe_bits(lobes: &PerLobe<LobeEval8>, lane: usize) -> [[u32; 5]; 4] {
+fn lobe_bits(lobes: &PerLobe<LobeEval8>, lane: usize) -> [[u32; 5]; Lobe::COUNT] {
     lobes.0.map(|lobe| {
         let [r, g, b] = lobe.color;
         [lobe.value, lobe.pdf, r, g, b].map(|x| x.as_array()[lane].to_bits())
@@ -184,13 +184,13 @@ fn lobe_bits(lobes: &PerLobe<LobeEval8>, lane: usize) -> [[u32; 5]; 4] {
 }
 
 /// Returns the bits of a lane of albedos.
-fn albedo_bits(albedo: &PerLobe<[f32x8; 3]>, lane: usize) -> [[u32; 3]; 4] {
+fn albedo_bits(albedo: &PerLobe<[f32x8; 3]>, lane: usize) -> [[u32; 3]; Lobe::COUNT] {
     let bits = |x: f32x8| x.as_array()[lane].to_bits();
     albedo.0.map(|color| color.map(bits))
 }
 
 /// Bits of values, samples and lobes, by lane.
-type AllBits = [([u32; 4], [u32; 11], [[u32; 5]; 4]); 8];
+type AllBits = [([u32; 4], [u32; 11], [[u32; 5]; Lobe::COUNT]); 8];
 
 fn all_bits(evals: &Eval8, samples: &Sample8, lobes: &PerLobe<LobeEval8>) -> AllBits {
     core::array::from_fn(|lane| {

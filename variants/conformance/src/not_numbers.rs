@@ -6,7 +6,7 @@ use crate::erased::{COLUMNS, ErasedBsdf, ErasedBsdf8, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Direction, hits, hits8, packet, sobol, triples};
 use hairis::simd::{Level, f32x8};
-use hairis::{Eval, Hit, Sample8};
+use hairis::{Eval, Hit, Lobe, Sample8};
 
 const NAME: &str = "inputs that are no numbers are black";
 
@@ -153,7 +153,7 @@ pub fn inputs_that_are_no_numbers_are_black(subject: &dyn ErasedSubject) -> Outc
             at_one(&*seen, Some(odd_wi[0]), Some(odd_xi[0])),
         ];
         let albedo = unseen.albedo();
-        if albedo.0 != [[0.0; 3]; 4] {
+        if albedo.0 != [[0.0; 3]; Lobe::COUNT] {
             faults.push(Some(format!("albedo {albedo:?}")));
         }
         for level in Level::available() {

@@ -216,7 +216,7 @@ pub(crate) fn masks() -> Vec<LobeMask> {
             .collect();
         LobeMask::of(&lobes)
     };
-    (0..16).map(subset).collect()
+    (0..1 << Lobe::COUNT).map(subset).collect()
 }
 
 /// Packs eight vectors into lanes.

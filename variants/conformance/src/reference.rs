@@ -89,7 +89,10 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
                 continue;
             };
             let values = reference.lobe_values(double(wi)).0;
-            if values.into_iter().any(|value| value < tolerance.lobe_floor) {
+            if values[..subject.lobe_count()]
+                .iter()
+                .any(|value| *value < tolerance.lobe_floor)
+            {
                 continue;
             }
             let lobes = bsdf.lobes(wi);

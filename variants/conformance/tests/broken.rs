@@ -387,7 +387,7 @@ impl Model for Fiber {
             pdf: cone.pdf.min(limit),
             ..cone
         };
-        PerLobe([diffuse, cone, none, none])
+        PerLobe::padded([diffuse, cone], none)
     }
 
     #[inline(always)]
@@ -477,11 +477,6 @@ impl Model for Fiber {
             seen,
             sum * prepared.span.lanes() * (loss * FRAC_1_PI / f32::from(STEPS)),
         );
-        PerLobe([
-            kd,
-            [ks[0] * by, ks[1] * by, ks[2] * by],
-            [zero; 3],
-            [zero; 3],
-        ])
+        PerLobe::padded([kd, [ks[0] * by, ks[1] * by, ks[2] * by]], [zero; 3])
     }
 }

@@ -6,7 +6,7 @@ use crate::hair::Material;
 use crate::shapes::{EVAL, PDF, SAMPLE, any_shape, one, pair};
 use crate::text::literal;
 use crate::values::{items, vector, word};
-use hairis_capi::layout::{BSDF_SIZE, LobeResult, RawBsdf};
+use hairis_capi::layout::{BSDF_SIZE, LOBES, LobeResult, RawBsdf};
 use hairis_capi::{columns, points};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -46,7 +46,7 @@ impl Bsdf {
             material,
             wo,
             h,
-            lobes: 0b1111,
+            lobes: (1 << LOBES) - 1,
             raw,
         }
     }
@@ -79,7 +79,7 @@ impl Bsdf {
     /// >>> list(hairis.Material("gaussian").prepare((0, 1, 0)).albedo())
     /// ['r', 'tt', 'trt', 'glint']
     fn albedo<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let mut lobes = [[0.0; 3]; 4];
+        let mut lobes = [[0.0; 3]; LOBES];
         // SAFETY: the BSDF is prepared.
         unsafe { points::hairis_albedo(&raw const self.raw, &raw mut lobes) };
         let by_name = PyDict::new(py);
@@ -104,7 +104,7 @@ impl Bsdf {
     /// 3
     fn lobes<'py>(&self, py: Python<'py>, wi: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
         let wi = vector("wi", wi)?;
-        let mut lobes = [LobeResult::default(); 4];
+        let mut lobes = [LobeResult::default(); LOBES];
         // SAFETY: the BSDF is prepared.
         unsafe { points::hairis_lobes(&raw const self.raw, wi[0], wi[1], wi[2], &raw mut lobes) };
         let by_name = PyDict::new(py);

@@ -7,7 +7,9 @@ mod parameters;
 
 use crate::interface::{LobeAt, Reference, ReferenceSample};
 use crate::real::Real;
-use crate::steps::{Fixed, GRAZING, choose, finish_sample, fixed, inclination, mix, sum_to_one};
+use crate::steps::{
+    Fixed, GRAZING, choose, finish_sample, fixed, four, inclination, mix, sum_to_one,
+};
 use azimuth::Logistic;
 use hairis::{Lobe, PerLobe};
 use hairis_variants::ChiangDesc;
@@ -83,7 +85,7 @@ impl<T: Real> ChiangConstants<T> {
                     .map(|shift| [shift.sin(), shift.cos()]),
             ),
             logistics: PerLobe(parameters.scales().0.map(Logistic::new)),
-            tints: PerLobe([
+            tints: four([
                 parameters.tint_r,
                 parameters.tint_tt,
                 parameters.tint_trt,
@@ -139,9 +141,9 @@ impl<T: Real> ChiangConstants<T> {
         }
         ChiangReference {
             phi_o,
-            cones: PerLobe([cone(Lobe::R), cone(Lobe::TT), cone(Lobe::TRT), cone(REST)]),
+            cones: PerLobe::padded([cone(Lobe::R), cone(Lobe::TT), cone(Lobe::TRT)], cone(REST)),
             logistics: self.logistics,
-            centres: PerLobe([centre(0.0), centre(1.0), centre(2.0), centre(3.0)]),
+            centres: four([centre(0.0), centre(1.0), centre(2.0), centre(3.0)]),
             fresnel,
             path_length,
             depth,
@@ -212,7 +214,7 @@ impl<T: Real> ChiangReference<T> {
 
     fn lobes_at(&self, sin_theta_i: T, cos_theta_i: T, phi: T) -> PerLobe<LobeAt<T>> {
         let mut lobes = PerLobe::default();
-        for lobe in Lobe::ALL {
+        for lobe in Lobe::FOUR {
             let pdf =
                 self.cones[lobe].density(sin_theta_i, cos_theta_i) * self.azimuthal(lobe, phi);
             lobes[lobe] = LobeAt {
@@ -291,7 +293,7 @@ impl<T: Real> Reference<T> for ChiangReference<T> {
     fn lobe_errors(&self, wi: [T; 3]) -> Option<PerLobe<[T; 2]>> {
         let [sin, cos] = inclination(wi);
         let number = T::from_f64;
-        Some(PerLobe(Lobe::ALL.map(|lobe| {
+        Some(four(Lobe::FOUR.map(|lobe| {
             let [exponent, width] = self.cones[lobe].exponent(sin, cos);
             let mut errors = number(6.5e-6) + number(1.2e-6) / width;
             if lobe != REST {
@@ -365,7 +367,7 @@ fn fresnel<T: Real>(contrast: T, eta: T, cos: T) -> [T; 2] {
 /// Computes A of R, TT, TRT and of all the rest, a geometric series, after Chiang et al. 2016, section 3; `depth` is that of one
 /// passage.
 fn attenuation<T: Real>(fresnel: T, passed: T, depth: [T; 3]) -> PerLobe<[T; 3]> {
-    let mut all = PerLobe([[fresnel; 3]; 4]);
+    let mut all = PerLobe::padded([[fresnel; 3]], [T::default(); 3]);
     for (channel, depth) in depth.into_iter().enumerate() {
         let (transmitted, absorbed) = ((-depth).exp(), -(-depth).exp_m1());
         let tt = passed * passed * transmitted;
@@ -388,7 +390,7 @@ fn probabilities<T: Real>(attenuation: &PerLobe<[T; 3]>, selection: Selection) -
             .into_iter()
             .fold(zero, |sum, lobe| sum + lobe[channel]);
     }
-    sum_to_one(attenuation.0.map(|lobe| match selection {
+    sum_to_one(PerLobe(attenuation.0.map(|lobe| match selection {
         Selection::Mean => lobe[0] + lobe[1] + lobe[2],
         Selection::ByChannel => {
             let share = |c: usize| {
@@ -401,5 +403,5 @@ fn probabilities<T: Real>(attenuation: &PerLobe<[T; 3]>, selection: Selection) -
             let [r, g, b] = [share(0), share(1), share(2)];
             (r * r + g * g + b * b).sqrt()
         }
-    }))
+    })))
 }

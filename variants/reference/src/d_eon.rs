@@ -5,11 +5,14 @@ mod errors;
 mod rtxcr;
 
 use crate::chiang::{Cone, wrap};
+use crate::cylinder::{self, cylinder};
 use crate::interface::{LobeAt, Reference, ReferenceSample};
 use crate::quadrature::integrate;
 use crate::real::Real;
-use crate::steps::{Fixed, GRAZING, choose, finish_sample, fixed, inclination, mix, sum_to_one};
-use azimuth::{Passage, ThreeGaussians, cylinder, mean_reflectance, normal_reflectance, schlick};
+use crate::steps::{
+    Fixed, GRAZING, choose, finish_sample, fixed, four, inclination, mix, sum_to_one,
+};
+use azimuth::{Passage, ThreeGaussians, mean_reflectance, normal_reflectance, schlick};
 use hairis::params::Pigments;
 use hairis::{Lobe, LobeMask, PerLobe};
 use hairis_variants::DEonDesc;
@@ -123,12 +126,12 @@ impl<T: Real> DEonReference<T> {
         // The mean of F, TT along its shortest path, TRT and the diffuse lobe.
         let shortest = passage.cos_gamma_t(one);
         let mean_of = |rgb: [T; 3]| (rgb[0] + rgb[1] + rgb[2]) / number(3.0);
-        let probabilities = sum_to_one([
+        let probabilities = sum_to_one(four([
             kept * mean,
             kept * passed * mean_of(depth.map(|depth| (-depth * shortest).exp())),
             mean_of(attenuation_trt),
             mean_of(diffuse),
-        ]);
+        ]));
         Self {
             roughness,
             phi_o,
@@ -253,7 +256,7 @@ impl<T: Real> DEonReference<T> {
         let one = T::from_f64(1.0);
         // At the edge F is 1; elsewhere the ratio is at most 1.65 times the mean of F, which a test finds on a grid.
         let inside = T::from_f64(MIDDLE) * self.reflectance;
-        PerLobe([
+        four([
             [self.kept * (one / self.offset_pdf(one)).max(inside); 3],
             self.attenuation_tt(one, self.passage.cos_gamma_t(one)),
             self.attenuation_trt,
@@ -263,7 +266,7 @@ impl<T: Real> DEonReference<T> {
 
     fn lobes_at(&self, [sin_theta_i, cos_theta_i]: [T; 2], phi: T) -> PerLobe<LobeAt<T>> {
         let mut lobes = PerLobe::default();
-        for lobe in Lobe::ALL {
+        for lobe in Lobe::FOUR {
             let along = if lobe == DIFFUSE {
                 T::from_f64(2.0) * cos_theta_i / T::PI
             } else {
@@ -302,18 +305,12 @@ impl<T: Real> DEonReference<T> {
 
     /// Draws sine and cosine of `theta_i`, and the azimuth from that of `wo`.
     fn draw(&self, lobe: Lobe, xi: [T; 3]) -> ([T; 2], T) {
-        let (one, two) = (T::from_f64(1.0), T::from_f64(2.0));
-        if lobe != DIFFUSE {
-            let phi = self.sample_azimuth(lobe, xi[1]);
-            let cone = self.cone(lobe, phi);
-            return (cone.direction(cone.sample(xi[0]), xi[2]), phi);
+        if lobe == DIFFUSE {
+            return cylinder::draw(xi);
         }
-        // A point of the side that is seen, and a direction about its normal by the cosine.
-        let normal = (two * xi[0] - one).asin();
-        let (radius, height) = (xi[1].sqrt(), (one - xi[1]).sqrt());
-        let turn = T::PI * (two * xi[2] - one);
-        let (along, across) = (radius * turn.sin(), radius * turn.cos());
-        ([along, across.hypot(height)], normal + across.atan2(height))
+        let phi = self.sample_azimuth(lobe, xi[1]);
+        let cone = self.cone(lobe, phi);
+        (cone.direction(cone.sample(xi[0]), xi[2]), phi)
     }
 }
 
@@ -388,7 +385,7 @@ impl<T: Real> Reference<T> for DEonReference<T> {
                 gamma.cos() * self.attenuation_tt(gamma.cos(), inside)[channel]
             })
         };
-        PerLobe([
+        four([
             [self.kept * self.reflectance; 3],
             [passed(0), passed(1), passed(2)],
             self.attenuation_trt,
@@ -400,7 +397,7 @@ impl<T: Real> Reference<T> for DEonReference<T> {
     #[inline]
     fn weight_bound(&self, mask: LobeMask) -> Option<T> {
         let zero = T::default();
-        let lit = Lobe::ALL.into_iter().filter(|lobe| mask.contains(*lobe));
+        let lit = Lobe::FOUR.into_iter().filter(|lobe| mask.contains(*lobe));
         let share = lit
             .clone()
             .fold(zero, |sum, lobe| sum + self.probabilities[lobe]);

@@ -111,6 +111,16 @@ pub trait Reference<T: Real>: Debug + Send + Sync {
         unimplemented!("this reference has no albedo")
     }
 
+    /// Estimates the albedo of all lobes together, as the mean over the channels, as [`Model::energy`](hairis::model::Model::energy) does.
+    ///
+    /// Provided: the mean of [`albedo`](Self::albedo).
+    #[must_use]
+    fn energy(&self) -> T {
+        let sum = |rgb: [T; 3]| rgb[0] + rgb[1] + rgb[2];
+        let of_lobes = self.albedo().0.into_iter().map(sum);
+        of_lobes.fold(T::default(), |sum, lobe| sum + lobe) / T::from_f64(3.0)
+    }
+
     /// Returns the probabilities of a smaller inclination and of a smaller azimuth `phi_o - phi_i`, in rad, for a sample of `lobe`:
     /// the `xi[1]` and `xi[2]` of the sample. `None` unless the formulas have them.
     #[must_use]

@@ -125,7 +125,7 @@ impl<T: Real> KajiyaKayConstants<T> {
             cos_theta_o,
             norm: self.norm,
             norm_pdf: self.norm_pdf,
-            probabilities: sum_to_one([diffuse, specular * returned, zero, zero]),
+            probabilities: sum_to_one(PerLobe::padded([diffuse, specular * returned], zero)),
         }
     }
 }
@@ -253,7 +253,7 @@ impl<T: Real> Reference<T> for KajiyaKayReference<T> {
         let sum = sin_i.atan2(cos_i) + self.sin_theta_o.atan2(self.cos_theta_o);
         let angle = p * (number(1.0) + number(2.0) * sum.tan().abs()) * number(1.2e-7);
         let exponent = p * sum.cos().max(number(1e-30)).ln() * number(4e-7);
-        let mut errors = PerLobe([[T::default(); 2]; 4]);
+        let mut errors = PerLobe::<[T; 2]>::default();
         errors[DIFFUSE] = [number(1e-6); 2];
         errors[SPECULAR] = [number(3e-6) + angle - exponent; 2];
         Some(errors)
@@ -294,7 +294,7 @@ impl<T: Real> Reference<T> for KajiyaKayReference<T> {
     fn albedo(&self) -> PerLobe<[T; 3]> {
         let (p, zero) = (&self.parameters, T::default());
         let specular = self.specular_albedo();
-        PerLobe([p.kd, p.ks.map(|c| c * specular), [zero; 3], [zero; 3]])
+        PerLobe::padded([p.kd, p.ks.map(|c| c * specular)], [zero; 3])
     }
 }
 

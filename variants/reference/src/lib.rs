@@ -26,6 +26,7 @@
 
 pub mod agreement;
 mod chiang;
+mod cylinder;
 mod d_eon;
 pub mod errata;
 mod interface;
@@ -47,6 +48,7 @@ pub use real::Real;
 pub use registry::{
     Accuracy, Formulas, Visitor, accuracy, exact_reference, reference, slack, visit,
 };
+
 
 /// Examples of the package's README.
 #[cfg(doctest)]

@@ -20,7 +20,7 @@ mod shape;
 
 use crate::interface::{LobeAt, Reference, ReferenceSample};
 use crate::real::Real;
-use crate::steps::{GRAZING, choose, mix_pdfs, shares};
+use crate::steps::{GRAZING, choose, mix_pdfs, shares, sum};
 use hairis::params::HairDesc;
 use hairis::{Lobe, PerLobe};
 
@@ -196,7 +196,7 @@ impl<T: Real> HairReference<T> {
     fn lobes_with(&self, at: &Angles<T>, pdfs: &PerLobe<T>) -> PerLobe<LobeAt<T>> {
         let (values, colours) = (self.values_at(at), colours(&self.parameters));
         let mut lobes = PerLobe::default();
-        for lobe in Lobe::ALL {
+        for lobe in Lobe::FOUR {
             lobes[lobe] = LobeAt {
                 value: values[lobe],
                 color: colours[lobe],
@@ -280,6 +280,11 @@ impl<T: Real> Reference<T> for HairReference<T> {
         albedo::albedo(self)
     }
 
+    /// Returns twice the sum of the [`energies`](HairReference::energies), because `theta_i` moves by twice as much as `theta_h`.
+    fn energy(&self) -> T {
+        T::from_f64(2.0) * sum(&self.energies)
+    }
+
     fn cdf(&self, lobe: Lobe, theta_i: T, phi: T) -> Option<[T; 2]> {
         Some([self.cdf_theta(lobe, theta_i), self.cdf_phi(lobe, phi)])
     }
@@ -293,7 +298,7 @@ impl<T: Real> Reference<T> for HairReference<T> {
 
 /// Returns the colour of each lobe; the strength of the glint is in its value.
 fn colours<T: Real>(p: &HairDesc<T>) -> PerLobe<[T; 3]> {
-    PerLobe([p.i_r, p.i_tt, p.i_trt, p.i_trt])
+    PerLobe::padded([p.i_r, p.i_tt, p.i_trt, p.i_trt], [T::default(); 3])
 }
 
 /// Computes the energies of the lobes by section 3.2.3.

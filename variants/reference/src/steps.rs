@@ -49,12 +49,12 @@ pub(crate) fn inclination<T: Real>([u, v, w]: [T; 3]) -> [T; 2] {
 pub(crate) const GRAZING: f64 = 1e-5;
 
 /// Divides the parts by their sum; all are 0 if the sum is 0.
-pub(crate) fn sum_to_one<T: Real>(parts: [T; 4]) -> PerLobe<T> {
+pub(crate) fn sum_to_one<T: Real>(PerLobe(parts): PerLobe<T>) -> PerLobe<T> {
     let zero = T::default();
     // Divided by the largest first, because the sum of large parts may overflow.
     let largest = parts.into_iter().fold(zero, T::max);
     if largest <= zero {
-        return PerLobe([zero; 4]);
+        return PerLobe::default();
     }
     let parts = parts.map(|part| part / largest);
     let sum = parts.into_iter().fold(zero, |sum, part| sum + part);
@@ -63,10 +63,7 @@ pub(crate) fn sum_to_one<T: Real>(parts: [T; 4]) -> PerLobe<T> {
 
 /// Computes the share of each part in the sum; all are 0 if the sum is 0.
 pub(crate) fn shares<T: Real>(parts: &PerLobe<T>) -> PerLobe<T> {
-    let total = parts
-        .0
-        .into_iter()
-        .fold(T::default(), |sum, part| sum + part);
+    let total = sum(parts);
     let share = |part| {
         if total > T::default() {
             part / total
@@ -75,6 +72,19 @@ pub(crate) fn shares<T: Real>(parts: &PerLobe<T>) -> PerLobe<T> {
         }
     };
     PerLobe(parts.0.map(share))
+}
+
+/// Pads the values of four lobes with a zero.
+pub(crate) fn four<T: Copy + Default>(values: [T; 4]) -> PerLobe<T> {
+    PerLobe::padded(values, T::default())
+}
+
+/// Sums the parts of all lobes.
+pub(crate) fn sum<T: Real>(parts: &PerLobe<T>) -> T {
+    parts
+        .0
+        .into_iter()
+        .fold(T::default(), |sum, part| sum + part)
 }
 
 /// Computes the density of the mixture.

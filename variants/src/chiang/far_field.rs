@@ -182,7 +182,7 @@ impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL>
     #[inline]
     #[must_use]
     pub fn albedo(&self) -> PerLobe<[f32; 3]> {
-        let mut sum = PerLobe([[0.0; 3]; 4]);
+        let mut sum = PerLobe([[0.0; 3]; hairis::Lobe::COUNT]);
         for (near, weight) in self.near.iter().zip(self.nodes.weight) {
             let albedo = near.albedo8();
             for (sum, lobe) in sum.0.iter_mut().zip(albedo.0) {

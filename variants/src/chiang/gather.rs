@@ -366,13 +366,18 @@ fn channel<L: Lanes, C: Broadcast<L>>(prepared: &ChiangPrepared<C>, c: usize) ->
     four(&[a[c], a[3 + c], a[6 + c], a[9 + c]])
 }
 
+/// Returns the numbers of the four lobes, and 0 in the slot after them.
+#[inline(always)]
+fn padded<L: Lanes>(four: Four<L>) -> PerLobe<L> {
+    let [r, tt, trt, rest] = apart(four);
+    PerLobe([r, tt, trt, rest, L::splat(0.0)])
+}
+
 /// Returns the mean of each lobe's attenuation over the channels.
 #[inline(always)]
 pub(super) fn mean_shares<L: Lanes, C: Broadcast<L>>(prepared: &ChiangPrepared<C>) -> PerLobe<L> {
-    PerLobe(apart(
-        (channel(prepared, 0) + channel(prepared, 1) + channel(prepared, 2))
-            * Four::splat(1.0 / 3.0),
-    ))
+    let sum = channel(prepared, 0) + channel(prepared, 1) + channel(prepared, 2);
+    padded(sum * Four::splat(1.0 / 3.0))
 }
 
 /// Returns `sqrt(sum over the channels of (A_pc / mu_c)^2)` for each lobe, with `mu_c` the sum over the lobes.
@@ -394,7 +399,7 @@ pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(
         sum = share.mul_add(share, sum);
         c += 1;
     }
-    PerLobe(apart(sum.sqrt()))
+    padded(sum.sqrt())
 }
 
 impl ChiangPrepared<f32> {

@@ -3,33 +3,18 @@
 use super::prepare::DEonPrepared;
 use crate::chiang::{Four, apart, four, same};
 use crate::cone::{SEAM, bessel};
-use core::f32::consts::{FRAC_1_PI, FRAC_PI_2};
-use hairis::PerLobe;
-use hairis::model::math::{
-    FRAC_PI_2_LOW, atan_unit, gaussian, gaussian_and_complement, horner, polynomial,
-};
+use crate::cylinder::{self, Azimuth};
+use hairis::model::math::{gaussian, gaussian_and_complement, horner};
 use hairis::model::{Direction, LobeEval};
 use hairis::simd::{Broadcast, Lanes, Pair, Schedule, lanes3};
 
 /// Least `cos(phi/2)` in the width of R.
 pub(super) const LEAST_SQUEEZE: f32 = 0.1;
-/// Least density of R, TT and the diffuse lobe, which end at an azimuth. Levels round differently, and without a least density a lobe might be 0 on one and
+/// Least density of R and TT, which end at an azimuth. Levels round differently, and without a least density a lobe might be 0 on one and
 /// not on another.
 const LEAST: f32 = 1e-30;
 /// Least cosine in the attenuation of TT, for the same reason.
 const LEAST_PASSED: f32 = 1e-6;
-/// Coefficients in powers of the square of `x` of `(sin x - x cos x) / x^3`.
-const CYLINDER: [f32; 9] = [
-    0.333_333_333,
-    -0.033_333_333_3,
-    1.190_476_19e-3,
-    -2.204_585_54e-5,
-    2.505_210_84e-7,
-    -1.927_085_26e-9,
-    1.070_602_92e-11,
-    -4.498_331_6e-14,
-    1.479_714_3e-16,
-];
 
 /// Returns the light that passes the surface twice at a ray whose `gamma_i` has this cosine: `(1 - F)^2` times the share of the lobe.
 ///
@@ -50,38 +35,16 @@ pub(super) fn clear_passage<L: Lanes, C: Broadcast<L>>(
 pub(super) fn lobes<L: Lanes, C: Broadcast<L>>(
     prepared: &DEonPrepared<C>,
     wi: &Direction<L>,
-) -> PerLobe<LobeEval<L>> {
+) -> [LobeEval<L>; 4] {
     let c = L::splat;
     let (zero, one, least) = (c(0.0), c(1.0), c(LEAST));
     let cos_i = wi.cos_theta;
     let inv_root_i = L::quotient(one, cos_i.sqrt());
     let inv_cos = inv_root_i * inv_root_i;
 
-    L::stage("half the azimuth: its tangent, or the inverse of that, whichever is smaller");
-    // R, TT and the diffuse lobe vanish with the cosine of half the azimuth, or at a sine near it: both take the digits of `wo` and of
-    // `wi` as they are, and no sum that cancels.
-    let [v_o, w_o, cos_o] = lanes3(&prepared.plane_o);
-    let dot = wi.vector.y.mul_add(v_o, wi.vector.z * w_o);
-    let cross = L::difference_of_products(wi.vector.z, v_o, wi.vector.y, w_o).abs();
-    let reach = (cos_i * cos_o).max(least);
-    let far = reach + dot.abs();
-    // A minimum is not NaN either, where `wi` is no direction.
-    let tangent = L::quotient(cross, far).min(one);
-    let larger = L::quotient(far, reach + reach).sqrt().min(one);
-    let smaller = tangent * larger;
-    let is_front = zero.lt(dot);
-    let (cos, sin) = (
-        L::select(is_front, larger, smaller),
-        L::select(is_front, smaller, larger),
-    );
+    let azimuth = Azimuth::between(lanes3(&prepared.plane_o), wi);
+    let ([cos, sin], phi) = (azimuth.half, azimuth.phi);
     let (cos_sq, sin_sq) = (cos * cos, sin * sin);
-    let near = atan_unit(tangent);
-    let rest = c(FRAC_PI_2) - (near - FRAC_PI_2_LOW);
-    // The azimuth, and what it lacks of half a turn.
-    let (phi, lacking) = (
-        L::select(is_front, near, rest) * 2.0,
-        L::select(is_front, rest, near) * 2.0,
-    );
 
     L::stage("azimuthal density and attenuation of R");
     let squeeze = cos.max(c(LEAST_SQUEEZE));
@@ -140,9 +103,7 @@ pub(super) fn lobes<L: Lanes, C: Broadcast<L>>(
     let [m_r, m_tt, m_trt, _] = apart(gaussian(exponent).alone() * bessel * norm);
 
     L::stage("value and density of the diffuse lobe");
-    let square = lacking * lacking;
-    let cylinder = square * lacking * polynomial(square, CYLINDER) * (0.25 * FRAC_1_PI);
-    let cylinder = cylinder.max(least);
+    let cylinder = cylinder::value(azimuth.lacking);
 
     let by_lobe = [
         (m_r * n_r).max(least),
@@ -155,7 +116,7 @@ pub(super) fn lobes<L: Lanes, C: Broadcast<L>>(
         clear * gaussian(depth[1] * cos_gamma_t),
         clear * gaussian(depth[2] * cos_gamma_t),
     ];
-    PerLobe([
+    [
         LobeEval::new(by_lobe[0] * inv_cos, [r; 3], by_lobe[0] * drawn_r),
         LobeEval::new(by_lobe[1] * inv_cos, tt, by_lobe[1]),
         LobeEval::new(
@@ -164,5 +125,5 @@ pub(super) fn lobes<L: Lanes, C: Broadcast<L>>(
             by_lobe[2],
         ),
         LobeEval::new(cylinder, lanes3(&prepared.diffuse), cylinder * cos_i),
-    ])
+    ]
 }

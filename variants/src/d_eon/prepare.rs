@@ -2,6 +2,7 @@
 
 use super::DEonDesc;
 use super::trt::{DEonGaussians, gaussians};
+use crate::cylinder;
 use core::f32::consts::LN_2;
 use hairis::model::math::{gaussian, gaussian_and_complement, half_atan2, horner, polynomial};
 use hairis::model::{Direction, Precision};
@@ -217,21 +218,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         ..
     } = Direction::normalized(wo);
     let k = k.min(one);
-    // The digits of a `wo` of about unit length are kept as they are. On the axis the azimuth is 0.
-    let largest = wo.x.abs().max(wo.z.abs().max(wo.y.abs()));
-    let usual = L::and(c(0.25).lt(largest), largest.lt(c(4.0)));
-    let (y, z) = (
-        L::select_predictable(usual, wo.y, vector.y),
-        L::select_predictable(usual, wo.z, vector.z),
-    );
-    let plane = y.mul_add(y, z * z).sqrt();
-    let off_axis = c(1e-18).lt(plane);
-    let plane_o = [
-        L::select_predictable(off_axis, y, one),
-        L::keep(off_axis, z),
-        L::select_predictable(off_axis, plane, one),
-    ];
-    let inv_plane = L::quotient(one, plane_o[2]);
+    let (plane_o, inv_plane) = cylinder::plane(wo, vector);
 
     L::stage("refraction, and means of the reflectance over the width");
     let [eta, contrast, root_contrast] = lanes3(&m.eta);

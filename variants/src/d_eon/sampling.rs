@@ -2,8 +2,8 @@
 
 use super::lobes::LEAST_SQUEEZE;
 use super::prepare::DEonPrepared;
-use crate::cone;
-use core::f32::consts::{FRAC_PI_2, LN_2, PI};
+use crate::{cone, cylinder};
+use core::f32::consts::{FRAC_PI_2, LN_2};
 use hairis::model::Direction;
 use hairis::model::math::{
     gaussian_and_complement, log2_one_plus, normal_tail_inverse, sin_cos_half_turn,
@@ -89,37 +89,15 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
         ],
     );
 
-    L::stage("diffuse lobe: a normal that is seen, and a direction about it by its cosine");
-    let sin_normal = xi[0].mul_sub(two, one);
-    let cos_normal = zero.max((one - sin_normal) * (one + sin_normal)).sqrt();
-    let (radius, height) = (xi[1].sqrt(), (one - xi[1]).sqrt());
-    let (sin, cos) = sin_cos_half_turn((xi[2] - 0.5) * PI);
-    let (sin_turn, cos_turn) = ((sin + sin) * cos, (cos - sin) * (cos + sin));
-    let (across, sin_d) = (radius * cos_turn, radius * sin_turn);
-    let cos_d = across.mul_add(across, height * height).sqrt();
-    let inv_cos_d = L::quotient(one, cos_d);
-    let sin_phi_d = sin_normal.mul_add(height, cos_normal * across) * inv_cos_d;
-    let cos_phi_d = cos_normal.mul_sub(height, sin_normal * across) * inv_cos_d;
-
-    L::stage("direction");
+    let ([sin_d, cos_d], [sin_phi_d, cos_phi_d]) = cylinder::draw(xi);
     let theta = [
         L::select(is_diffuse, sin_d, sin_i),
         L::select(is_diffuse, cos_d, cos_i),
     ];
-    let sin_x = L::select(is_diffuse, sin_phi_d, sin_phi);
-    let cos_x = L::select(is_diffuse, cos_phi_d, cos_phi);
-    let inv_plane = prepared.inv_plane_o.lanes();
-    let (v, w) = (
-        prepared.plane_o[0].lanes() * inv_plane,
-        prepared.plane_o[1].lanes() * inv_plane,
-    );
-    let phi = [v.mul_add(sin_x, w * cos_x), v.mul_sub(cos_x, w * sin_x)];
-    Direction::from_sin_cos(unit(theta), unit(phi))
-}
-
-/// Returns sine and cosine of about unit length at unit length: the narrowest lobes change with the roundings of a few steps.
-#[inline(always)]
-fn unit<L: Lanes>([sin, cos]: [L; 2]) -> [L; 2] {
-    let off = (L::splat(1.0) - cos.mul_add(cos, sin * sin)) * 0.5;
-    [sin.mul_add(off, sin), cos.mul_add(off, cos)]
+    let azimuth = [
+        L::select(is_diffuse, sin_phi_d, sin_phi),
+        L::select(is_diffuse, cos_phi_d, cos_phi),
+    ];
+    let plane_o = [prepared.plane_o[0].lanes(), prepared.plane_o[1].lanes()];
+    cylinder::direction(plane_o, prepared.inv_plane_o.lanes(), theta, azimuth)
 }

@@ -86,7 +86,7 @@ fn hair_albedo_error(model: ModelId, at: &mut Coordinates<'_>, arithmetic: Arith
     let got = prepared(&point, arithmetic).albedo();
     let (p, theta_o) = described(&point);
     let colors = [p.i_r, p.i_tt, p.i_trt, p.i_trt].map(|rgb| rgb[0]);
-    most(Lobe::ALL.map(|lobe| {
+    most(Lobe::FOUR.map(|lobe| {
         let got = f64::from(got[lobe][0]) / colors[lobe.index()];
         unexplained((shape(model), &p, theta_o), (lobe, got), 0.0)
     }))
@@ -105,7 +105,7 @@ fn albedo_error(model: ModelId, at: &mut Coordinates<'_>, arithmetic: Arithmetic
 fn conserving_error(model: ModelId, at: &mut Coordinates<'_>, arithmetic: Arithmetic) -> f64 {
     let raw = any_point(model, at);
     let (p, theta_o) = described(&raw);
-    let PerLobe([r, tt, trt, glint]) = exact(shape(model), &p, theta_o);
+    let PerLobe([r, tt, trt, glint, _]) = exact(shape(model), &p, theta_o);
     let point = Point {
         material: raw.material.conserving(),
         ..raw

@@ -230,7 +230,7 @@ fn batch_samples(bsdf: &AnyBsdf, xi: &[[f32; 3]]) -> Vec<(Vec3, Found<f32>)> {
 }
 
 /// Evaluates the densities of the lobes. They have no slice call, so this takes eight directions per call.
-fn batch_densities(bsdf: &AnyBsdf, wi: &[Vec3]) -> Vec<[f32; 4]> {
+fn batch_densities(bsdf: &AnyBsdf, wi: &[Vec3]) -> Vec<[f32; Lobe::COUNT]> {
     let eight = |wi: &[Vec3]| {
         let lobes = bsdf.lobes8(&Vec3x8::from(from_fn(|i| wi[i.min(wi.len() - 1)])));
         (0..wi.len())
@@ -318,8 +318,8 @@ fn drawn(sample: Option<Sample>) -> Found<f32> {
 fn answer<T: Copy + Default>(
     model: ModelId,
     found: Found<T>,
-    mut densities: [T; 4],
-    colors: &dyn Fn() -> [[T; 3]; 4],
+    mut densities: [T; Lobe::COUNT],
+    colors: &dyn Fn() -> [[T; 3]; Lobe::COUNT],
 ) -> Answer<T> {
     let names = model.lobes();
     let (wi, s, pdf, choice) = match found {
@@ -332,7 +332,7 @@ fn answer<T: Copy + Default>(
             lobe,
         }) => {
             if lobe.is_none() {
-                densities = [T::default(); 4];
+                densities = [T::default(); Lobe::COUNT];
             }
             (
                 Some(wi),
@@ -360,6 +360,6 @@ fn answer<T: Copy + Default>(
     }
 }
 
-fn densities_of_lane(lobes: &PerLobe<LobeEval8>, lane: usize) -> [f32; 4] {
+fn densities_of_lane(lobes: &PerLobe<LobeEval8>, lane: usize) -> [f32; Lobe::COUNT] {
     lobes.0.map(|lobe| lobe.pdf.as_array()[lane])
 }

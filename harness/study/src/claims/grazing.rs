@@ -107,7 +107,7 @@ pub fn discarded(params: &HairParams, theta_o: f64) -> f64 {
     let of = |lobe: Lobe| {
         hair.cdf_theta(lobe, CAP - FRAC_PI_2) + 1.0 - hair.cdf_theta(lobe, FRAC_PI_2 - CAP)
     };
-    Lobe::ALL
+    Lobe::FOUR
         .into_iter()
         .map(|lobe| shares[lobe] * of(lobe))
         .sum()

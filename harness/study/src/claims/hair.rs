@@ -79,7 +79,7 @@ fn whole_glint(p: &HairDesc<f64>) -> CauchyDensity<f64> {
 
 /// Returns the sum over the lobes, each weighted by its share of the samples.
 fn mixture(shares: &PerLobe<f64>, of: &PerLobe<f64>) -> f64 {
-    Lobe::ALL
+    Lobe::FOUR
         .into_iter()
         .map(|lobe| shares[lobe] * of[lobe])
         .sum()
@@ -172,7 +172,7 @@ impl Hair {
     fn integrals(&self, phi: &[f64]) -> [Bounded; 6] {
         let (masses, shares) = (self.masses(), self.oracle.probabilities());
         let mut kept = shares;
-        Lobe::ALL
+        Lobe::FOUR
             .into_iter()
             .for_each(|lobe| kept[lobe] *= masses[lobe]);
         let glint = whole_glint(&self.parameters);

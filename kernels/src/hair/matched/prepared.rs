@@ -199,6 +199,19 @@ impl<C, const N: usize> MatchedPrepared<C, N> {
         height
     }
 
+    /// Computes the integral of each lobe without its colour, with the constants for W.
+    #[inline(always)]
+    pub(super) fn extents<B: MatchedBell, L: Lanes>(&self) -> [L; 4]
+    where
+        C: Broadcast<L>,
+    {
+        let azimuth_mass = [self.azimuth_mass[0].lanes(), self.azimuth_mass[1].lanes()];
+        times(
+            extent::<B, L, C>(&self.view.lobes, azimuth_mass),
+            lanes4(&self.area),
+        )
+    }
+
     /// Computes the factors on `M N W` of a lobe drawn alone. Apply them one after the other, because their product may be too
     /// large.
     #[inline(always)]

@@ -23,7 +23,7 @@ fn integrals(reference: &dyn Reference<f64>, point: &Point) -> PerLobe<f64> {
         reference.lobe_values([sin, cos * azimuth.cos(), cos * azimuth.sin()])[lobe]
     };
     let mut all = PerLobe::default();
-    for lobe in Lobe::ALL {
+    for lobe in Lobe::FOUR {
         let centre = 2.0 * p.alpha[l(lobe)] - point.theta_o;
         let theta_0 = centre.clamp(-1.4, 1.4);
         let phi_0 = [0.0, PI, 0.0, p.phi_g][lobe.index()];
@@ -61,8 +61,8 @@ pub fn albedo_is_the_integral(tested: &Tested) {
             let got = material.prepare(point.wo).albedo();
             let want = integrals(reference, point);
             let d = point.params.desc();
-            let colors = PerLobe([d.i_r, d.i_tt, d.i_trt, d.i_trt]);
-            for lobe in Lobe::ALL {
+            let colors = PerLobe::padded([d.i_r, d.i_tt, d.i_trt], d.i_trt);
+            for lobe in Lobe::FOUR {
                 for c in 0..3 {
                     let want = want[lobe] * f64::from(colors[lobe][c]);
                     // A lobe that lies off the sphere returns next to nothing.
@@ -162,12 +162,13 @@ pub fn exact(shape: Shape, p: &HairDesc<f64>, theta_o: f64) -> PerLobe<f64> {
         })
     };
     let [r, tt, trt] = inclination;
-    PerLobe([
+    let lobes = [
         4.0 * r,
         azimuth(PI, p.gamma_tt) * tt,
         4.0 * trt,
         azimuth(p.phi_g, p.gamma_g) * p.i_g * trt,
-    ])
+    ];
+    PerLobe::padded(lobes, 0.0)
 }
 
 /// Error of half an inclination in the kernels, in rad: a unit in the last place of angles from 0.5 to 1.
@@ -220,8 +221,8 @@ pub fn albedo_of_any_width_is_the_integral(tested: &Tested) {
             let (wo, theta_o) = off_pole(at);
             let got = material.prepare(wo).albedo();
             let d = params.desc();
-            let colors = PerLobe([d.i_r, d.i_tt, d.i_trt, d.i_trt]);
-            for lobe in Lobe::ALL.into_iter().filter(|lobe| colors[*lobe][0] > 0.0) {
+            let colors = PerLobe::padded([d.i_r, d.i_tt, d.i_trt], d.i_trt);
+            for lobe in Lobe::FOUR.into_iter().filter(|lobe| colors[*lobe][0] > 0.0) {
                 let got = f64::from(got[lobe][0]) / f64::from(colors[lobe][0]);
                 let formulas = (tested.formulas.shape, &p, theta_o);
                 let error = unexplained(formulas, (lobe, got), tested.rows.albedo_any);
@@ -261,7 +262,7 @@ pub fn conserving_hair_returns_at_most_what_it_receives(tested: &Tested) {
             let (p, d) = (parameters(&params, factor), params.desc());
             for at in any_inclinations().filter(|(off, _)| *off > 1e-5) {
                 let (wo, theta_o) = off_pole(at);
-                let PerLobe([r, tt, trt, glint]) = exact(tested.formulas.shape, &p, theta_o);
+                let PerLobe([r, tt, trt, glint, _]) = exact(tested.formulas.shape, &p, theta_o);
                 // Sums computed by the material, and by an integral at the hit.
                 let fitted = sums(model.conserving_albedo(&params, wo.into()));
                 let integrated = sums(raw.prepare(wo).conserving().albedo());
@@ -307,7 +308,8 @@ pub fn max_albedo_bounds_lobes_of_any_width(tested: &Tested) {
             let most = f64::from(Material::new(model, &params).max_albedo());
             let mut seen = 0.0_f64;
             for at in any_inclinations() {
-                let PerLobe([r, tt, trt, glint]) = exact(tested.formulas.shape, &p, off_pole(at).1);
+                let PerLobe([r, tt, trt, glint, _]) =
+                    exact(tested.formulas.shape, &p, off_pole(at).1);
                 for c in 0..3 {
                     let [i_r, i_tt, i_trt] = [d.i_r[c], d.i_tt[c], d.i_trt[c]].map(f64::from);
                     seen = seen.max(r * i_r + tt * i_tt + (trt + glint) * i_trt);

@@ -78,7 +78,7 @@ fn scan(tested: &Tested, bands: usize, worst: &mut LargestError, over_mean: &mut
         let params = hair(|lo, hi| draws.scale(lo, hi));
         let theta_o = draws.sign() * MOST.min(draws.between(0.0, 100.0));
         let mask = if round % 4 == 0 {
-            LobeMask::of(&[Lobe::ALL[draws.below(4)]])
+            LobeMask::of(&[Lobe::FOUR[draws.below(4)]])
         } else {
             LobeMask::ALL
         };

@@ -22,7 +22,7 @@ pub fn lobes_add_up(tested: &Tested) {
                     .sum();
                 s.see(relative(all.value[c], sum, 1e-20), at);
             }
-            let sum = Lobe::ALL
+            let sum = Lobe::FOUR
                 .into_iter()
                 .map(|lobe| probability[lobe] * f64::from(lobes[lobe].pdf))
                 .sum();
@@ -42,7 +42,7 @@ pub fn a_subset_scatters_its_lobes_alone(tested: &Tested) {
         let bsdf = material.prepare(point.wo);
         for mask in masks() {
             let part = bsdf.with_lobes(mask);
-            let total: f64 = Lobe::ALL
+            let total: f64 = Lobe::FOUR
                 .into_iter()
                 .map(|l| reference.probabilities()[l] * f64::from(mask.factor(l)))
                 .sum();
@@ -50,7 +50,7 @@ pub fn a_subset_scatters_its_lobes_alone(tested: &Tested) {
                 let at = || format!("{mask:?} wo {:?} wi {wi:?} {:?}", point.wo, point.params);
                 let (lobes, got) = (bsdf.lobes(wi), part.eval_pdf(wi));
                 let of = |f: &dyn Fn(Lobe) -> f64| -> f64 {
-                    Lobe::ALL
+                    Lobe::FOUR
                         .into_iter()
                         .filter(|lobe| mask.contains(*lobe))
                         .map(f)
@@ -77,7 +77,7 @@ pub fn a_lobe_is_colored_by_its_parameters(tested: &Tested) {
         let wi = point.directions(1)[0];
         let lobes = bsdf.lobes(wi);
         let colors = [d.i_r, d.i_tt, d.i_trt, d.i_trt];
-        for (lobe, color) in Lobe::ALL.into_iter().zip(colors) {
+        for (lobe, color) in Lobe::FOUR.into_iter().zip(colors) {
             assert_eq!(lobes[lobe].color, color, "color of {lobe:?}");
         }
         // The strength of the glints belongs to their value, not to their colour.

@@ -42,7 +42,7 @@ fn scan(tested: &Tested, kind: Kind, per_point: usize) -> [LargestError; 4] {
                     see(eval.lane(lane), level.name());
                 }
                 let scalar = bsdf.lobes(*wi);
-                for lobe in Lobe::ALL {
+                for lobe in Lobe::FOUR {
                     let eight = &wide_lobes[lobe];
                     let wide = [eight.value.as_array()[lane], eight.pdf.as_array()[lane]];
                     // Normalised, a lobe of the last few powers of two of a Gaussian would show where the Gaussian is cut.

@@ -49,12 +49,13 @@ struct Line {
 /// Returns `theta` and `phi` where each lobe is large.
 fn peaks(params: &HairParams, theta_o: f64) -> PerLobe<[f64; 2]> {
     let p = parameters(params, 1.0);
-    PerLobe(Lobe::ALL.map(|lobe| {
+    let peaks = Lobe::FOUR.map(|lobe| {
         [
             (2.0 * p.alpha[lobe.index().min(2)] - theta_o).clamp(-1.3, 1.3),
             [0.0, PI, 0.0, p.phi_g][lobe.index()],
         ]
-    }))
+    });
+    PerLobe::padded(peaks, [0.0; 2])
 }
 
 fn line(bsdf: &dyn Sampling, points: &[(f64, f64)], at: impl Fn(Lobe, f64) -> [f64; 2]) -> Line {
@@ -63,7 +64,7 @@ fn line(bsdf: &dyn Sampling, points: &[(f64, f64)], at: impl Fn(Lobe, f64) -> [f
         value: Default::default(),
         density: Default::default(),
     };
-    for (slot, lobe) in Lobe::ALL.into_iter().enumerate() {
+    for (slot, lobe) in Lobe::FOUR.into_iter().enumerate() {
         for eight in points.chunks(8) {
             // Lanes past the last point repeat the first.
             let angles: [_; 8] = array::from_fn(|i| at(lobe, eight.get(i).unwrap_or(&eight[0]).0));
@@ -108,7 +109,7 @@ fn azimuth(bsdf: &dyn Sampling, params: &HairParams, theta_o: f64) -> Line {
     let points: Vec<_> = rule(&ends).into_iter().map(|(x, w)| (x, 2.0 * w)).collect();
     let peaks = peaks(params, theta_o);
     let mut line = line(bsdf, &points, |lobe, phi| [peaks[lobe][0], phi]);
-    for lobe in Lobe::ALL {
+    for lobe in Lobe::FOUR {
         let [theta, phi] = peaks[lobe];
         let top =
             f64::from(bsdf.lobes(direction(theta, PHI_O - phi))[lobe].value) * theta.cos().powi(2);

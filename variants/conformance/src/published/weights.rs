@@ -34,7 +34,7 @@ fn span(lo: f64, hi: f64, b: f64) -> f64 {
 fn bounds(tested: &Tested, params: &HairParams, factor: f32, wo: Vec3, mask: LobeMask) -> [f64; 3] {
     let p = parameters(params, factor);
     let probability = oracle(&tested.formulas, params, factor, wo).probabilities();
-    let total: f64 = Lobe::ALL
+    let total: f64 = Lobe::FOUR
         .into_iter()
         .map(|l| probability[l] * f64::from(mask.factor(l)))
         .sum();
@@ -64,7 +64,7 @@ fn bounds(tested: &Tested, params: &HairParams, factor: f32, wo: Vec3, mask: Lob
                 0.0
             }
         };
-        Lobe::ALL.into_iter().map(of).fold(0.0, f64::max)
+        Lobe::FOUR.into_iter().map(of).fold(0.0, f64::max)
     })
 }
 
@@ -128,7 +128,7 @@ pub fn weights_are_below_their_bound(tested: &Tested) {
             let material = Material::new(model, &params);
             let wo = direction(draws.between(-1.57, 1.57), draws.between(-PI, PI));
             let mask = match round % 6 {
-                0 => LobeMask::of(&[Lobe::ALL[draws.below(4)]]),
+                0 => LobeMask::of(&[Lobe::FOUR[draws.below(4)]]),
                 1 => LobeMask::of(&[Lobe::R, Lobe::TT, Lobe::TRT]),
                 _ => LobeMask::ALL,
             };
@@ -163,7 +163,7 @@ pub fn the_bound_is_reached(tested: &Tested) {
     for (model, factor) in tested.forms() {
         let params = HairParams::bright();
         let material: Material<'_> = Material::new(model, &params);
-        for lobe in Lobe::ALL {
+        for lobe in Lobe::FOUR {
             let (mask, wo) = (LobeMask::of(&[lobe]), direction(0.3, 0.0));
             let bsdf = material.prepare(wo).with_lobes(mask);
             let limit = bounds(tested, &params, factor, wo, mask)[0];

@@ -33,7 +33,10 @@ impl Model for Slow {
     }
 
     #[inline(always)]
-    fn restrict<C: Lanes>(prepared: &Self::Prepared<C>, lobes: LobeMask) -> Self::Prepared<C> {
+    fn restrict<C: Lanes + Broadcast<C>>(
+        prepared: &Self::Prepared<C>,
+        lobes: LobeMask,
+    ) -> Self::Prepared<C> {
         Fiber::restrict(prepared, lobes)
     }
 

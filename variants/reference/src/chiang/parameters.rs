@@ -111,7 +111,7 @@ impl<T: Real> ChiangFormulas<T> for ChiangDesc<T> {
         let (number, m) = (T::from_f64, self.beta_m);
         let root = number(0.726) * m + number(0.812) * m * m + number(3.7) * m.powf(number(20.0));
         let [r, tt, trt] = self.width_m.map(|width| width * root * (width * root));
-        PerLobe([r, tt, trt, trt])
+        PerLobe::padded([r, tt], trt)
     }
 
     #[inline]
@@ -120,7 +120,7 @@ impl<T: Real> ChiangFormulas<T> for ChiangDesc<T> {
         let sum = number(0.265) * n + number(1.194) * n * n + number(5.372) * n.powf(number(22.0));
         let scale = (T::PI / number(8.0)).sqrt() * sum;
         let [r, tt, trt] = self.width_n.map(|width| width * scale);
-        PerLobe([r, tt, trt, trt])
+        PerLobe::padded([r, tt], trt)
     }
 
     #[inline]
@@ -131,6 +131,6 @@ impl<T: Real> ChiangFormulas<T> for ChiangDesc<T> {
             Shifts::DEon => [number(1.0), number(4.0)],
             Shifts::SmallAngle => [two * self.eta - two, number(4.0) * self.eta - two],
         };
-        PerLobe([-two * tilt, tt * tilt, trt * tilt, T::default()])
+        PerLobe::padded([-two * tilt, tt * tilt, trt * tilt], T::default())
     }
 }

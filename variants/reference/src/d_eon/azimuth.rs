@@ -79,26 +79,6 @@ pub(super) fn mean_reflectance<T: Real>(f0: T, k: T) -> [T; 3] {
     [mean, one - two * mean + square, mean - square]
 }
 
-/// Computes `sin x - x cos x`, of which a Lambertian cylinder's azimuth is an eighth at `x` less than half a turn. Small numbers take the
-/// series, because the difference cancels.
-pub(super) fn cylinder<T: Real>(x: T) -> T {
-    const SERIES: [f64; 6] = [
-        1.0 / 3.0,
-        -1.0 / 30.0,
-        1.0 / 840.0,
-        -1.0 / 45_360.0,
-        1.0 / 3_991_680.0,
-        -1.0 / 518_918_400.0,
-    ];
-    if x < T::from_f64(0.25) {
-        let square = x * x;
-        let terms = SERIES.iter().rev();
-        let sum = terms.fold(T::default(), |sum, c| sum * square + T::from_f64(*c));
-        return square * x * sum;
-    }
-    x.sin() - x * x.cos()
-}
-
 /// TT at one inclination: `q = 1 / eta'`, of the projected index `eta'`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Passage<T> {

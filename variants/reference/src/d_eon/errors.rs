@@ -5,7 +5,7 @@ use super::{DEonReference, DIFFUSE};
 use crate::chiang::wrap;
 use crate::interface::Reference as _;
 use crate::real::Real;
-use crate::steps::inclination;
+use crate::steps::{four, inclination};
 use hairis::{Lobe, PerLobe};
 
 /// Error of the arithmetic of a lobe, which has functions with errors of their own.
@@ -32,7 +32,7 @@ impl<T: Real> DEonReference<T> {
         }
         // N of TT vanishes with a difference of two sines, and A with the square of it.
         let edge = off / beyond.max(off);
-        Some(PerLobe(Lobe::ALL.map(|lobe| {
+        Some(four(Lobe::FOUR.map(|lobe| {
             let plain = number(ARITHMETIC);
             if lobe == DIFFUSE {
                 return [plain; 2];

@@ -39,7 +39,7 @@ pub(super) fn albedo<T: Real>(book: &HairReference<T>) -> PerLobe<[T; 3]> {
     let inclinations = [inclination(0), inclination(1), inclination(2)];
     let colours = colours(p);
     let mut albedo = PerLobe::default();
-    for lobe in Lobe::ALL {
+    for lobe in Lobe::FOUR {
         let area = areas[lobe.index()] * inclinations[lobe.index().min(2)];
         albedo[lobe] = colours[lobe].map(|c| c * area);
     }

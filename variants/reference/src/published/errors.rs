@@ -2,6 +2,7 @@
 
 use super::{Angles, CauchyDensity, HairReference, Shape};
 use crate::real::Real;
+use crate::steps::four;
 use hairis::{Lobe, PerLobe};
 
 /// Error of a lobe besides those of its bells: half a dozen roundings, and the shares of the lobes.
@@ -50,7 +51,7 @@ pub(super) fn lobes<T: Real>(book: &HairReference<T>, at: &Angles<T>) -> PerLobe
         Lobe::GLINT => ends(&book.glint, [T::default(), right], AZIMUTH),
         _ => T::default(),
     };
-    PerLobe(Lobe::ALL.map(|lobe| {
+    four(Lobe::FOUR.map(|lobe| {
         let l = lobe.index().min(2);
         let of = |shape: Shape| {
             let inclination = bell(shape, p.beta[l], theta_h - p.alpha[l], INCLINATION);

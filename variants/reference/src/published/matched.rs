@@ -5,7 +5,7 @@ use super::shape::Shape;
 use super::{Angles, HairReference};
 use crate::interface::{LobeAt, Reference, ReferenceSample};
 use crate::real::Real;
-use crate::steps::{choose, mix_pdfs, shares};
+use crate::steps::{choose, mix_pdfs, shares, sum};
 use hairis::params::HairDesc;
 use hairis::{Lobe, LobeMask, PerLobe};
 
@@ -97,13 +97,14 @@ impl<T: Real> MatchedReference<T> {
         }
         let mean = |rgb: [T; 3]| (rgb[0] + rgb[1] + rgb[2]) / number(3.0);
         let trt = mean(p.i_trt);
-        let intensity = PerLobe([mean(p.i_r), mean(p.i_tt), trt, trt * p.i_g]);
-        let azimuth = PerLobe([
+        let intensity = PerLobe::padded([mean(p.i_r), mean(p.i_tt), trt, trt * p.i_g], zero);
+        let azimuth = [
             number(4.0),
             number(2.0) * p.gamma_tt * transmission.area,
             number(4.0),
             number(2.0) * p.gamma_g * glint.area,
-        ]);
+        ];
+        let azimuth = PerLobe::padded(azimuth, zero);
         let quarter = T::PI * number(0.25);
         let mut this = Self {
             book,
@@ -111,14 +112,14 @@ impl<T: Real> MatchedReference<T> {
             bands,
             sines,
             heights,
-            areas: PerLobe([[zero; MOST + 1]; 4]),
+            areas: PerLobe([[zero; MOST + 1]; Lobe::COUNT]),
             transmission,
             glint,
             extents: PerLobe::default(),
             energies: PerLobe::default(),
             probabilities: PerLobe::default(),
         };
-        for lobe in Lobe::ALL {
+        for lobe in Lobe::FOUR {
             let i = lobe.index().min(2);
             let centre = half * book.theta_o - p.alpha[i];
             let cut = Cut::new(
@@ -156,19 +157,19 @@ impl<T: Real> MatchedReference<T> {
     pub fn by_channel(self) -> Self {
         let p = &self.book.parameters;
         let glint = p.i_trt.map(|i| i * p.i_g);
-        let intensity = PerLobe([p.i_r, p.i_tt, p.i_trt, glint]);
-        let mut sums = PerLobe([T::default(); 4]);
+        let intensity = PerLobe::padded([p.i_r, p.i_tt, p.i_trt, glint], [T::default(); 3]);
+        let mut sums = PerLobe::<T>::default();
         for channel in 0..3 {
             let mut energies = PerLobe::default();
-            for lobe in Lobe::ALL {
+            for lobe in Lobe::FOUR {
                 energies[lobe] = intensity[lobe][channel] * self.extents[lobe];
             }
             let shares = shares(&energies);
-            for lobe in Lobe::ALL {
+            for lobe in Lobe::FOUR {
                 sums[lobe] = sums[lobe] + shares[lobe] * shares[lobe];
             }
         }
-        for lobe in Lobe::ALL {
+        for lobe in Lobe::FOUR {
             sums[lobe] = sums[lobe].sqrt();
         }
         Self {
@@ -220,7 +221,7 @@ impl<T: Real> MatchedReference<T> {
     fn pdfs_at(&self, at: &Angles<T>, sin_theta_i: T) -> PerLobe<T> {
         let height = self.heights[self.band(sin_theta_i)];
         let mut pdfs = PerLobe::default();
-        for lobe in Lobe::ALL {
+        for lobe in Lobe::FOUR {
             pdfs[lobe] = height * self.bell_theta(lobe, at.theta_i) * self.pdf_phi(lobe, at.phi)
                 / at.cos_theta_i;
         }
@@ -388,6 +389,11 @@ impl<T: Real> Reference<T> for MatchedReference<T> {
         self.book.albedo()
     }
 
+    /// Returns the sum of the energies by which a lobe is chosen.
+    fn energy(&self) -> T {
+        sum(&self.energies)
+    }
+
     fn cdf(&self, lobe: Lobe, theta_i: T, phi: T) -> Option<[T; 2]> {
         Some([self.cdf_theta(lobe, theta_i), self.cdf_phi(lobe, phi)])
     }
@@ -397,7 +403,7 @@ impl<T: Real> Reference<T> for MatchedReference<T> {
     fn weight_bound(&self, mask: LobeMask) -> Option<T> {
         let (zero, theta_o) = (T::default(), self.book.theta_o);
         let lobes = || {
-            Lobe::ALL
+            Lobe::FOUR
                 .into_iter()
                 .filter(|l| mask.contains(*l) && self.probabilities[*l] > zero)
         };

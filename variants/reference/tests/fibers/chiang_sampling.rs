@@ -26,7 +26,7 @@ fn both_distributions_invert() {
     let (mut cone, mut azimuth) = (LargestError::default(), LargestError::default());
     for beta in ROUGHNESSES {
         let fiber = prepare(&clear(beta, beta, 2.0), 0.4, 0.3);
-        for (lobe, xi) in Lobe::ALL
+        for (lobe, xi) in Lobe::FOUR
             .into_iter()
             .flat_map(|lobe| uniforms().map(move |xi| (lobe, xi)))
         {
@@ -60,7 +60,7 @@ fn inclinations_follow_the_longitudinal_term() {
             let p = clear(beta_m, 0.3, tilt);
             let fiber = prepare(&p, theta_o * DEG, 0.0);
             let rule = inclinations(&p, &fiber, FRAC_PI_2);
-            for lobe in Lobe::ALL {
+            for lobe in Lobe::FOUR {
                 let draw = |[a, b]: [f64; 2]| {
                     let [sin, cos] = fiber.sample_inclination(lobe, a, b);
                     assert!(
@@ -266,7 +266,7 @@ fn samples_pass_chi_square_on_the_sphere() {
         let theta = rule(
             -FRAC_PI_2,
             FRAC_PI_2,
-            &Lobe::ALL.map(|lobe| (fiber.cone(lobe), 0.05)),
+            &Lobe::FOUR.map(|lobe| (fiber.cone(lobe), 0.05)),
             &[],
         );
         let value = chi_square(&fiber, &theta, &centres.map(|c| (c, p.scales()[Lobe::TT])));
@@ -292,7 +292,7 @@ fn few_offsets_make_the_far_field_of_rough_fibres() {
                 .map(|&(h, w)| (prepare(&p, theta_o * DEG, h), 0.5 * w))
                 .collect();
             let one = |fiber: &ChiangFiber, phi: f64| -> f64 {
-                Lobe::ALL
+                Lobe::FOUR
                     .into_iter()
                     .map(|lobe| fiber.albedo()[lobe][0] * fiber.azimuthal(lobe, phi))
                     .sum()

@@ -26,7 +26,7 @@ fn e1_cones_lie_opposite_the_fixed_direction() {
     // Smooth fibres keep the inclination: without tilt every lobe lies at its mirror image.
     for theta_o in [0.2, -0.7, 1.2] {
         let fiber = prepare(&clear(0.05, 0.3, 0.0), theta_o, 0.3);
-        for lobe in Lobe::ALL {
+        for lobe in Lobe::FOUR {
             assert!(
                 (fiber.cone(lobe) + theta_o).abs() < 1e-15,
                 "{lobe:?} at {theta_o}"
@@ -43,7 +43,7 @@ fn e1_cones_lie_opposite_the_fixed_direction() {
     let alpha = -2.0 * DEG;
     let tilted = prepare(&clear(0.05, 0.3, 2.0), 0.5, 0.3);
     let cones = [-0.5 + 2.0 * alpha, -0.5 - alpha, -0.5 - 4.0 * alpha];
-    for (lobe, cone) in Lobe::ALL.into_iter().zip(cones) {
+    for (lobe, cone) in Lobe::FOUR.into_iter().zip(cones) {
         assert!(
             (tilted.cone(lobe) - cone).abs() < 1e-15,
             "{lobe:?}: {}",
@@ -299,7 +299,7 @@ fn e10_the_weight_needs_the_density_of_all_lobes() {
     let returned: [f64; 3] = core::array::from_fn(|c| albedo.0.iter().map(|a| a[c]).sum());
     // The printed weight A(p, h): its mean has each lobe once more.
     let printed: [f64; 3] = core::array::from_fn(|c| {
-        Lobe::ALL
+        Lobe::FOUR
             .into_iter()
             .map(|l| chosen[l] * albedo[l][c])
             .sum()
@@ -457,7 +457,7 @@ fn elsewhere_an_inverse_pi_too_many() {
         inclinations(&p, &fiber, FRAC_PI_2),
         super::chiang::azimuths(&p, &fiber),
     );
-    let returned: f64 = Lobe::ALL
+    let returned: f64 = Lobe::FOUR
         .into_iter()
         .map(|lobe| {
             let m = sum(&theta, |t| fiber.longitudinal(lobe, t) * t.cos());

@@ -242,7 +242,7 @@ fn e4_energies_hold_for_bells_of_peak_one() {
         trt * 4.0,
         trt * 2.0 * line(p.gamma_g) * p.i_g,
     ];
-    for (lobe, integral) in Lobe::ALL.into_iter().zip(integrals) {
+    for (lobe, integral) in Lobe::FOUR.into_iter().zip(integrals) {
         assert!(
             (energies[lobe] / integral - 1.0).abs() < 1e-10,
             "{lobe:?}: {} is {integral}",
