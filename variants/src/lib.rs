@@ -6,6 +6,7 @@
 //! | [`KajiyaKay`] | a diffuse cylinder and one cone of highlights | `kd + ks` of its parameters | one of two forms | Kajiya & Kay 1989 |
 //! | [`Chiang`] | near field, absorption in place of colours | yes | no | Chiang et al. 2016; d'Eon et al. 2011 |
 //! | [`DEon`] | far field, absorption and a diffuse part | yes | no | d'Eon 2022 as RTXCR has it; d'Eon et al. 2011 |
+//! | [`WithDiffuse<M>`](WithDiffuse) | any model `M` with a Lambertian cylinder beside its lobes | where `M` does | where `M` is | Lambert's law |
 //!
 //! A model of your own needs no change in the kernels, as `examples/lambert_fiber` shows. A model of this crate also implements
 //! [`Registered`], has parameters that implement [`Parameters`], and has a line in `registry.rs`, the only list of models. Hosts can
@@ -36,6 +37,7 @@ mod hair;
 pub mod kajiya_kay;
 mod parameters;
 mod registry;
+mod with_diffuse;
 
 pub use cauchy::Cauchy;
 pub use chiang::{Chiang, ChiangDesc, ChiangParams};
@@ -46,6 +48,7 @@ pub use parameters::{Draw, Field, FieldError, Kind, Parameters, Values};
 #[cfg(feature = "any")]
 pub use registry::{AnyBsdf, AnyBsdf8, AnyMaterial, AnyMaterial8};
 pub use registry::{ModelId, Registered, Visitor};
+pub use with_diffuse::{DiffusePresets, WithDiffuse, WithDiffuseDesc, WithDiffuseParams};
 
 /// All-Cauchy variant of the published model, in which a [`Cauchy`] bell replaces every Gaussian.
 pub type AllCauchy = hairis::Published<Cauchy>;

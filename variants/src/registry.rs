@@ -2,7 +2,7 @@
 //!
 //! To add a model, implement [`Registered`] beside its [`Model`] and [`Parameters`] for its parameters, and add a line to
 //! [`for_each_model!`] below. Run-time handles, the harness and the benches then include the model. Models that few programs need are
-//! lines of [`with_every_sampler!`], which only the feature `every-sampler` adds because they double the time to compile.
+//! lines of [`with_every_sampler!`], which only the feature `every-sampler` adds because they treble the time to compile.
 
 #[cfg(feature = "any")]
 mod any;
@@ -312,6 +312,14 @@ macro_rules! with_every_sampler {
             CauchyMatched25: Matched<Cauchy, 25>;
             /// The energy-conserving fibre, whose lobes are chosen by their share of the attenuation in each channel.
             ChiangByChannel: Chiang<true>;
+            /// The published model with a diffuse part, and the published sampler.
+            GaussianDiffuse: $crate::WithDiffuse<Published<Gaussian>>;
+            /// The published model with a diffuse part, and the matched sampler of nine bands.
+            GaussianDiffuseMatched: $crate::WithDiffuse<Matched<Gaussian>>;
+            /// The all-Cauchy variant with a diffuse part, and the published sampler.
+            CauchyDiffuse: $crate::WithDiffuse<AllCauchy>;
+            /// The energy-conserving fibre with a diffuse part.
+            ChiangDiffuse: $crate::WithDiffuse<Chiang>;
         }
     };
 }

@@ -20,6 +20,8 @@ mod color;
 #[cfg(any(not(hairis_one), hairis_one = "d-eon"))]
 mod d_eon;
 #[cfg(not(hairis_one))]
+mod diffuse;
+#[cfg(not(hairis_one))]
 mod dual_scattering;
 #[cfg(any(not(hairis_one), hairis_one = "cauchy"))]
 mod family;
@@ -39,5 +41,7 @@ mod registry;
 mod rows;
 #[cfg(not(hairis_one))]
 mod values;
+#[cfg(not(hairis_one))]
+mod with_diffuse;
 
 use hairis_conformance::published::support;

@@ -2,14 +2,32 @@
 //! `cargo test --workspace --test samplers`, as CI does.
 #![allow(clippy::unwrap_used, reason = "a test may panic: that is how it fails")]
 
+#[allow(dead_code, reason = "the main tests have its formulas")]
+mod diffuse;
+#[allow(dead_code, reason = "the main tests have its far field")]
 mod fiber;
+#[path = "../../kernels/tests/hair.rs"]
+#[allow(dead_code, reason = "the tests of the kernels have the other samplers")]
+mod hair;
+mod rows;
 
+use diffuse::Diffuse;
 use fiber::ChiangFibers;
-use hairis_conformance::published::support;
+use hair::{Bands, PublishedHair};
+use hairis_conformance::published::{Family, support};
 use hairis_conformance::{AsConserving, conformance};
 
 conformance!(
     chiang_by_channel,
     AsConserving(ChiangFibers::<true>),
     sampler
+);
+
+conformance!(
+    gaussian_diffuse,
+    AsConserving(Diffuse(Family::<PublishedHair>::new()))
+);
+conformance!(
+    gaussian_diffuse_matched,
+    AsConserving(Diffuse(Family::<Bands<9>>::new()))
 );

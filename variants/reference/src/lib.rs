@@ -37,6 +37,7 @@ mod real;
 mod registry;
 mod steps;
 pub mod truth;
+mod with_diffuse;
 
 pub use chiang::{ChiangConstants, ChiangFormulas, ChiangReference, Selection, bessel_i0_scaled};
 pub use d_eon::{DEonReference, RtxcrFaults, RtxcrReference};
@@ -49,6 +50,7 @@ pub use registry::{
     Accuracy, Formulas, Visitor, accuracy, exact_reference, reference, slack, visit,
 };
 
+pub use with_diffuse::{WithDiffuseConstants, WithDiffuseReference};
 
 /// Examples of the package's README.
 #[cfg(doctest)]

@@ -6,14 +6,15 @@ use crate::interface::Reference;
 use crate::kajiya_kay::{KajiyaKayConstants, KajiyaKayReference, cosine_power_integral};
 use crate::published::{HairReference, MatchedReference, Shape};
 use crate::real::Real;
+use crate::with_diffuse::{WithDiffuseConstants, WithDiffuseReference};
 use core::f64::consts::{PI, TAU};
 use core::fmt::Debug;
 use hairis::params::HairDesc;
 use hairis::{Gaussian, HairParams, Lobe, Matched, ParamError, Published};
 use hairis_variants::{
-    AllCauchy, Cauchy, Chiang, ChiangDesc, ChiangParams, DEon, DEonDesc, DEonParams, KajiyaKay,
-    KajiyaKayDesc, KajiyaKayParams, ModelId, Parameters as _, Registered, RegisteredBell, Values,
-    hair_desc,
+    AllCauchy, Cauchy, Chiang, ChiangDesc, ChiangParams, DEon, DEonDesc, DEonParams,
+    DiffusePresets, KajiyaKay, KajiyaKayDesc, KajiyaKayParams, ModelId, Parameters, Registered,
+    RegisteredBell, Values, WithDiffuse, WithDiffuseParams, hair_desc,
 };
 
 /// Model of the registry, paired with its formulas.
@@ -432,5 +433,43 @@ impl Formulas for DEon {
         DEonReference::prepare(&desc, wo)
             .slack(wi)
             .map(|edge| edge + tail)
+    }
+}
+
+/// Formulas whose error is that of the model, and never less than that of the cylinder.
+impl<M: Formulas<Params: DiffusePresets>> Formulas for WithDiffuse<M> {
+    type Constants<T: Real> = WithDiffuseConstants<M::Constants<T>, T>;
+    type Point<T: Real> = WithDiffuseReference<M::Point<T>, T>;
+    const ACCURACY: Accuracy = M::ACCURACY;
+
+    #[inline]
+    fn formulas<T: Real>(params: &Self::Params) -> Self::Constants<T> {
+        let desc = params.desc();
+        WithDiffuseConstants {
+            fiber: M::formulas(&desc.fiber),
+            diffuse: T::from_f32(desc.diffuse),
+            diffuse_color: desc.diffuse_color.map(T::from_f32),
+        }
+    }
+
+    #[inline]
+    fn exact_formulas<T: Real>(params: &Self::Params, exact: &Values<T>) -> Self::Constants<T> {
+        // The fields of the model come first, so that they have the places and names of the model alone.
+        let first = <M::Params as Parameters>::FIELDS.len();
+        WithDiffuseConstants {
+            fiber: M::exact_formulas(&params.desc().fiber, exact),
+            diffuse: exact.number_at(first),
+            diffuse_color: exact.get_at(first + 1),
+        }
+    }
+
+    #[inline]
+    fn point<T: Real>(constants: &Self::Constants<T>, wo: [T; 3], h: T) -> Self::Point<T> {
+        let fiber = M::point(&constants.fiber, wo, h);
+        WithDiffuseReference::prepare(constants, fiber, M::LOBES.len(), wo)
+    }
+
+    fn slack(params: &WithDiffuseParams<M::Params>, wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
+        M::slack(&params.desc().fiber, wo, wi)
     }
 }

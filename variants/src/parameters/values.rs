@@ -64,6 +64,17 @@ impl<T: Copy> Values<T> {
         }
     }
 
+    /// Returns the values as those of other fields: of the first fields alone, or of these fields and others after them.
+    #[inline]
+    pub(crate) const fn of_fields(&self, fields: &'static [Field]) -> Self {
+        let most = (1 << fields.len()) - 1;
+        Self {
+            fields,
+            given: self.given & most,
+            ..*self
+        }
+    }
+
     /// Returns the fields that the values belong to.
     #[inline]
     #[must_use]
