@@ -237,10 +237,18 @@ fn derivatives_at_the_ends_are_limits_from_within() {
                 } else {
                     random.values(*id, false)
                 };
-                for index in 0..id.fields().len() {
+                // Fields of a model and the hit are tested on the model alone. Beside a diffuse part S is never next to nothing, so that
+                // differences would not find its roots.
+                let count = id.fields().len();
+                let (fields, hits_at_ends) = if id.name().ends_with("-diffuse") {
+                    (count - 2..count, 0)
+                } else {
+                    (0..count, 4)
+                };
+                for index in fields {
                     compare_field(&mut table, on, &values, index, &mut random);
                 }
-                for _ in 0..4 {
+                for _ in 0..hits_at_ends {
                     let [_, _, mut silhouette, mut pole] = hits(&mut random);
                     compare_hit(&mut table, "h at -1 and 1", on, &values, &mut silhouette);
                     compare_hit(&mut table, "wo at a pole", on, &values, &mut pole);

@@ -68,9 +68,14 @@ impl<L: Lanes> DiffuseChoice<L> {
         // A sum of denormals has no reciprocal: it is scaled first.
         let scale = L::select(total.lt(c(1e-19)), c(1e19), one);
         let by = L::quotient(one, (total * scale).max(c(f32::MIN_POSITIVE)));
-        let p = (cylinder * scale * by).min(one);
-        // A difference from 1, so that it is 1 without a cylinder.
-        let q = L::keep(zero.lt(model), one - p);
+        // The larger one is a difference from 1, so that it is 1 without the other.
+        let is_rare = cylinder.lt(model);
+        let less = L::select(is_rare, cylinder, model) * scale * by;
+        let rest = L::keep(zero.lt(total), one - less);
+        let (q, p) = (
+            L::select(is_rare, rest, less),
+            L::select(is_rare, less, rest),
+        );
         Self {
             selection: [q, p],
             bound: L::select(zero.lt(p), q, c(2.0)),
