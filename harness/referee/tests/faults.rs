@@ -229,7 +229,7 @@ fn other_probabilities_of_lobes_are_no_fault() {
     let cases = cases("chiang");
     let density = |case: &Value, weigh: &dyn Fn([f64; 3]) -> f64| {
         let (_, point) = formulas(case, &[]);
-        let lobes = point.lobes(three(&case["wi"])).0;
+        let [lobes @ .., _] = point.lobes(three(&case["wi"])).0;
         let weights = lobes.map(|lobe| weigh(lobe.color));
         let parts = lobes.iter().zip(weights).map(|(lobe, w)| lobe.pdf * w);
         parts.sum::<f64>() / weights.iter().sum::<f64>()
