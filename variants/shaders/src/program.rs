@@ -30,13 +30,13 @@ pub struct Program {
 }
 
 impl Program {
-    /// Traces a model of the list, with its presets.
+    /// Traces a model of the list, or of a longer list, with its presets.
     #[must_use]
     pub fn of<M: Registered>(target: Target) -> Self {
         let mut name = M::NAME.replace('-', "_");
-        if !const { ModelId::of::<M>().is_default() }
-            && let Some((_, word)) = M::CHOICE
-        {
+        let word = M::CHOICE.map(|(_, word)| word);
+        let is_default = ModelId::find(M::NAME, word).is_none_or(ModelId::is_default);
+        if !is_default && let Some((_, word)) = M::CHOICE {
             name = format!("{name}_{}", word.replace('-', "_"));
         }
         let mut program = Self::trace::<M>(&name, target);

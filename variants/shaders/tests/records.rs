@@ -1,8 +1,9 @@
 //! Tests of the recorded numbers of operations and of live values per function, which make the growth of a model visible.
 
 use crate::support::every_model;
+use hairis::{Gaussian, Published};
 use hairis_shaders::{Call, Function, Program, Target};
-use hairis_variants::{ModelId, Registered, Visitor};
+use hairis_variants::{Chiang, ModelId, Registered, Visitor, WithDiffuse};
 use std::fs;
 
 const RECORD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/records/operations.csv");
@@ -41,6 +42,10 @@ fn operations_are_those_recorded() {
     let mut text = "model,arithmetic,function,operations,waiting,layout\n".to_owned();
     for id in ModelId::ALL {
         text += &id.visit(&Rows);
+    }
+    if ModelId::find("chiang-diffuse", None).is_none() {
+        text += &(&Rows).visit::<WithDiffuse<Published<Gaussian>>>();
+        text += &(&Rows).visit::<WithDiffuse<Chiang>>();
     }
     if std::env::var("HAIRIS_RECORD").is_ok_and(|word| word == "write") {
         fs::write(RECORD, &text).expect("the folder is ours");

@@ -4,10 +4,12 @@ use core::cell::RefCell;
 use core::fmt;
 use hairis::model::{Model, SampleLanes, Single};
 use hairis::simd::{Level, Vec3x, f32x8};
-use hairis::{Eval, Hit, Material, Material8};
+use hairis::{Eval, Gaussian, Hit, Material, Material8, Published};
 use hairis_conformance::cases;
 use hairis_shaders::{Call, Function, Target, numbers, parameters};
-use hairis_variants::{Field, Kind, ModelId, Parameters, Registered, Values, Visitor};
+use hairis_variants::{
+    Chiang, Field, Kind, ModelId, Parameters, Registered, Values, Visitor, WithDiffuse,
+};
 
 /// Generator of random numbers, `SplitMix64`.
 pub(crate) struct Random(pub(crate) u64);
@@ -379,6 +381,15 @@ pub(crate) fn visit_every_model<V: Visitor + Copy>(visitor: V) {
     for id in ModelId::ALL {
         id.visit(visitor);
     }
+    visit_models_with_diffuse(visitor);
+}
+
+/// Runs a test on models with a diffuse part, which are on the longer list of `every-sampler` alone.
+pub(crate) fn visit_models_with_diffuse<V: Visitor + Copy>(visitor: V) {
+    if ModelId::find("chiang-diffuse", None).is_none() {
+        visitor.visit::<WithDiffuse<Published<Gaussian>>>();
+        visitor.visit::<WithDiffuse<Chiang>>();
+    }
 }
 
 /// Returns true with more cases than those of CI: slow tests then have every model and every arithmetic.
@@ -394,7 +405,7 @@ pub(crate) fn some_targets<const N: usize>(
     all.into_iter().take(if is_long() { N } else { count })
 }
 
-/// Runs a slow test on models with the code of all: both bells, both samplers, and each fibre once.
+/// Runs a slow test on models with the code of all: both bells, both samplers, each fibre once, and the models with a diffuse part.
 pub(crate) fn visit_code_of_models<V: Visitor + Copy>(visitor: V) {
     let is_twin = |id: &ModelId| {
         let word = id.choice().map(|(_, word)| word);
@@ -406,6 +417,7 @@ pub(crate) fn visit_code_of_models<V: Visitor + Copy>(visitor: V) {
     for id in ModelId::ALL.iter().filter(|id| is_long() || !is_twin(id)) {
         id.visit(visitor);
     }
+    visit_models_with_diffuse(visitor);
 }
 
 /// Runs a function that is generic over a model for each model of the list, or for those of another function.
