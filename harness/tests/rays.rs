@@ -137,9 +137,9 @@ fn one_ray_obeys_the_law_of_visibility() {
             }
         }
     }
-    // 200 scores; the law's own error is of the same candidates, and below that of the measurement.
+    // The law's own error is of the same candidates, and below that of the measurement.
     assert!(
-        scores.len() == 200 && scores.iter().all(|z| z.abs() < 4.5),
+        scores.len() == 100 * subjects.len() && scores.iter().all(|z| z.abs() < 4.5),
         "{scores:?}"
     );
     assert!(scores.iter().any(|z| z.abs() > 0.5), "no errors at all");
@@ -151,6 +151,8 @@ fn plain_estimators_have_the_variances_of_their_references() {
     let (map, references) = sky();
     let subjects: Vec<RaySubject> = RaySubject::all()
         .filter(|subject| subject.sampler() == "published")
+        // Of models with a diffuse part there are no references.
+        .filter(|subject| !subject.model().ends_with("-diffuse"))
         .collect();
     for row in rows_of(&config(map, 512), &subjects, references)
         .iter()

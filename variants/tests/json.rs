@@ -3,7 +3,7 @@
 use hairis::HairParams;
 use hairis::params::HairDesc;
 use hairis_variants::chiang::Shifts;
-use hairis_variants::{ChiangParams, KajiyaKayParams, Parameters};
+use hairis_variants::{ChiangParams, KajiyaKayParams, Parameters, WithDiffuseParams};
 use serde_json::Value;
 
 /// Parameters come back from their JSON, whose keys are those of the fields that are given.
@@ -35,6 +35,20 @@ fn parameters_come_back_from_json() {
     round_trips::<HairParams>();
     round_trips::<KajiyaKayParams>();
     round_trips::<ChiangParams>();
+}
+
+#[test]
+fn parameters_with_a_diffuse_part_come_back_from_json() {
+    for (name, params) in WithDiffuseParams::<ChiangParams>::PRESETS {
+        let json = serde_json::to_value(params).unwrap();
+        let back: WithDiffuseParams<ChiangParams> = serde_json::from_value(json.clone()).unwrap();
+        assert_eq!(back, *params, "{name}");
+        for (key, value) in [("diffuse", 1.5.into()), ("share", 0.5.into())] {
+            let mut wrong = json.clone();
+            wrong[key] = value;
+            serde_json::from_value::<WithDiffuseParams<ChiangParams>>(wrong).unwrap_err();
+        }
+    }
 }
 
 #[test]

@@ -7,7 +7,7 @@ use hairis::simd::Level;
 use hairis::{Conserving, HairParams, Hit, Hit8, Lobe, LobeMask, Material, Material8, ParamError};
 use hairis_variants::{
     AnyMaterial8, ChiangDesc, ChiangParams, DEonParams, Field, KajiyaKayParams, Kind, ModelId,
-    Parameters, Registered, Visitor,
+    Parameters, Registered, Visitor, WithDiffuseParams,
 };
 
 #[test]
@@ -78,6 +78,8 @@ fn parameters_are_their_fields() {
     fields_hold::<KajiyaKayParams>();
     fields_hold::<ChiangParams>();
     fields_hold::<DEonParams>();
+    fields_hold::<WithDiffuseParams<HairParams>>();
+    fields_hold::<WithDiffuseParams<ChiangParams>>();
 }
 
 #[test]

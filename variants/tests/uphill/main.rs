@@ -111,12 +111,15 @@ impl Bound {
     }
 }
 
-/// Returns the bounds of every model and sampler, but of samplers that differ from one of these by constants.
+/// Returns the bounds of every model and sampler, but of samplers that differ from one of these by constants. A model with a diffuse part has
+/// the bounds of the model alone.
 fn bounds() -> Vec<Bound> {
     let words = ["published", "matched", "mean"];
     let is_one = |model: &&ModelId| model.choice().is_none_or(|(_, word)| words.contains(&word));
     let of = |model: &ModelId| [accuracy::bounds(*model), energy::bounds(*model)].concat();
-    ModelId::ALL.iter().filter(is_one).flat_map(of).collect()
+    let is_alone = |model: &&ModelId| !model.name().ends_with("-diffuse");
+    let models = ModelId::ALL.iter().filter(is_one).filter(is_alone);
+    models.flat_map(of).collect()
 }
 
 const RECORD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../benches/records/uphill.csv");
