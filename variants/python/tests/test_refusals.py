@@ -29,7 +29,7 @@ def refusals() -> list[tuple[type[Exception], str, Call]]:
     twice = [np.frombuffer(room, f32).reshape(3, 10) for _ in range(2)]
     lobes, energies = "lobes must be some of r, tt, trt, glint", "energy must be one of raw, conserving, scaled"
     samplers = ", ".join(hairis.models()["cauchy"]["choices"])
-    models = "model must be one of gaussian, cauchy, kajiya-kay, chiang, d-eon"
+    models = "model must be one of " + ", ".join(hairis.models())
     pbrt = "beta_m, beta_n, alpha, eta, sigma_a, eumelanin, reflectance, pheomelanin"
     fields = "alpha, beta, gamma_tt, gamma_g, phi_g, i_r, i_tt, i_trt, i_g"
 
