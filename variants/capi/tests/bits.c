@@ -243,7 +243,7 @@ static void skip_case(void) {
   for (int round = 0; round < 4; ++round) {
     take(16);
     for (int restricted = 0; restricted < 2; ++restricted) {
-      take(48 + 12 * (24 + 16 + 80 + 4 + 40));
+      take(HAIRIS_LOBES * 12 + 12 * (24 + 16 + HAIRIS_LOBES * 20 + 4 + 40));
       if (restricted) continue;
       size_t n = word();
       take((3 + 4 + 3 + 11 + 3 + 3 + 1) * n * sizeof(float) + 12 + 4 * n * sizeof(float) + 8);
