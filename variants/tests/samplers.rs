@@ -9,6 +9,8 @@ mod fiber;
 #[path = "../../kernels/tests/hair.rs"]
 #[allow(dead_code, reason = "the tests of the kernels have the other samplers")]
 mod hair;
+// The bounds of hair, not those of the all-Cauchy variant.
+#[path = "../../kernels/tests/rows.rs"]
 mod rows;
 
 use diffuse::Diffuse;
@@ -25,9 +27,11 @@ conformance!(
 
 conformance!(
     gaussian_diffuse,
-    AsConserving(Diffuse(Family::<PublishedHair>::new()))
+    AsConserving(Diffuse(Family::<PublishedHair>::new())),
+    sampler
 );
 conformance!(
     gaussian_diffuse_matched,
-    AsConserving(Diffuse(Family::<Bands<9>>::new()))
+    AsConserving(Diffuse(Family::<Bands<9>>::new())),
+    sampler
 );
