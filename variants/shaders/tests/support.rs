@@ -381,13 +381,16 @@ pub(crate) fn visit_every_model<V: Visitor + Copy>(visitor: V) {
     for id in ModelId::ALL {
         id.visit(visitor);
     }
-    visit_models_with_diffuse(visitor);
+    visit_models_with_diffuse(visitor, true);
 }
 
-/// Runs a test on models with a diffuse part, which are on the longer list of `every-sampler` alone.
-pub(crate) fn visit_models_with_diffuse<V: Visitor + Copy>(visitor: V) {
-    if ModelId::find("chiang-diffuse", None).is_none() {
-        visitor.visit::<WithDiffuse<Published<Gaussian>>>();
+/// Runs a test on models with a diffuse part, which are on the longer list of `every-sampler` alone: on the near field if `both`.
+pub(crate) fn visit_models_with_diffuse<V: Visitor + Copy>(visitor: V, both: bool) {
+    if ModelId::find("chiang-diffuse", None).is_some() {
+        return;
+    }
+    visitor.visit::<WithDiffuse<Published<Gaussian>>>();
+    if both {
         visitor.visit::<WithDiffuse<Chiang>>();
     }
 }
@@ -405,7 +408,7 @@ pub(crate) fn some_targets<const N: usize>(
     all.into_iter().take(if is_long() { N } else { count })
 }
 
-/// Runs a slow test on models with the code of all: both bells, both samplers, each fibre once, and the models with a diffuse part.
+/// Runs a slow test on models with the code of all: both bells, both samplers, each fibre once, and hair with a diffuse part.
 pub(crate) fn visit_code_of_models<V: Visitor + Copy>(visitor: V) {
     let is_twin = |id: &ModelId| {
         let word = id.choice().map(|(_, word)| word);
@@ -417,7 +420,7 @@ pub(crate) fn visit_code_of_models<V: Visitor + Copy>(visitor: V) {
     for id in ModelId::ALL.iter().filter(|id| is_long() || !is_twin(id)) {
         id.visit(visitor);
     }
-    visit_models_with_diffuse(visitor);
+    visit_models_with_diffuse(visitor, is_long());
 }
 
 /// Runs a function that is generic over a model for each model of the list, or for those of another function.
