@@ -33,7 +33,7 @@ cargo test -q --locked -p hairis-harness -p hairis-study -- --ignored || failed=
 cargo test -q --locked --release -p hairis-render --test main -- --ignored || failed=1
 cargo test -q --locked -p hairis-harness -p hairis-study -p hairis-render -p hairis-variants -p hairis-gradients --features hairis-variants/every-sampler \
   || failed=1
-# The C library with every sampler: at most 4 MB, and the answers of Rust.
+# The C library with every sampler: at most 5.75 MB, and the answers of Rust.
 library() {
   local work
   work=$(realpath -m "${CARGO_TARGET_DIR:-target}")/library
@@ -48,7 +48,7 @@ library() {
   "$work/bits" "$work/answers.bin" && "$work/refusals" || return 1
   size=$(stat -c %s "$work/prefix/lib/libhairis.so.1.0.0")
   echo "libhairis.so: $size bytes"
-  [ "$size" -le 4250000 ]
+  [ "$size" -le 5750000 ]
 }
 library || { echo "FAIL the C library"; failed=1; }
 # The wheel with every sampler: its tests, and Mitsuba's chi-square test of all sixteen entries of the list.
