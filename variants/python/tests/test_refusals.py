@@ -172,7 +172,7 @@ def test_refusals(place: int) -> None:
         ('{"model":7,"params":{}}', "model: must be a string, got 7"),
         (
             '{"model":"hair","params":{}}',
-            'model: must be "gaussian" or "cauchy" or "kajiya-kay" or "chiang" or "d-eon", got "hair"',
+            "model: must be " + " or ".join(f'"{model}"' for model in hairis.models()) + ', got "hair"',
         ),
         ('{"model":"gaussian","params":[1]}', "params: must be an object, got an array of 1"),
         (
