@@ -232,6 +232,26 @@ impl<L: Lanes> Hit<L> {
             h: L::keep(number, (-one).max(one.min(h))),
         }
     }
+
+    /// Returns the hit with the direction v in place of a `wo` that is not finite, and whether `wo` was finite: towards any other no lobe
+    /// scatters.
+    #[inline(always)]
+    #[must_use]
+    pub fn finite(self) -> (Self, L::Mask) {
+        let (one, infinity) = (L::splat(1.0), L::splat(f32::INFINITY));
+        L::stage("whether wo is finite: no lobe scatters towards any other");
+        let Vec3x { x, y, z } = self.wo;
+        let finite = L::and(
+            L::and(x.abs().lt(infinity), y.abs().lt(infinity)),
+            z.abs().lt(infinity),
+        );
+        let wo = Vec3x::new(
+            L::keep(finite, x),
+            L::select(finite, y, one),
+            L::keep(finite, z),
+        );
+        (Self { wo, ..self }, finite)
+    }
 }
 
 impl Hit {

@@ -178,13 +178,13 @@ impl<M: Model> Model for WithDiffuse<M> {
         hit: Hit<L>,
     ) -> Self::Prepared<L::Stored> {
         let fiber = M::prepare::<L, C>(&material.fiber, hit);
-        with_choice::<M, L>(fiber, material.diffuse.prepare(hit.wo))
+        with_choice::<M, L>(fiber, material.diffuse.prepare(hit))
     }
 
     #[inline(always)]
     fn prepare_one(material: &Self::Material<f32>, hit: Hit<f32>) -> Self::Prepared<f32> {
         let fiber = M::prepare_one(&material.fiber, hit);
-        with_choice::<M, f32>(fiber, material.diffuse.prepare(hit.wo))
+        with_choice::<M, f32>(fiber, material.diffuse.prepare(hit))
     }
 
     #[inline(always)]

@@ -316,21 +316,10 @@ impl<M: LobeModel> Model for M {
         material: &M::Material<C>,
         hit: Hit<L>,
     ) -> Mixed<M::Prepared<L::Stored>, L::Stored> {
-        let (one, infinity) = (L::splat(1.0), L::splat(f32::INFINITY));
-        L::stage("whether wo is finite: no lobe scatters towards any other");
-        let Vec3x { x, y, z } = hit.wo;
-        let finite = L::and(
-            L::and(x.abs().lt(infinity), y.abs().lt(infinity)),
-            z.abs().lt(infinity),
-        );
-        let wo = Vec3x::new(
-            L::keep(finite, x),
-            L::select(finite, y, one),
-            L::keep(finite, z),
-        );
-        let prepared = <M as LobeModel>::prepare(material, Hit::new(wo, hit.h));
+        let (Hit { wo, h }, finite) = hit.finite();
+        let prepared = <M as LobeModel>::prepare(material, Hit::new(wo, h));
         L::stage("probability of each lobe");
-        let kept = L::keep(finite, one);
+        let kept = L::keep(finite, L::splat(1.0));
         let mixture = Mixture::new(four(M::weights::<L, L::Stored>(&prepared)), [kept; 4]).store();
         Mixed { prepared, mixture }
     }

@@ -1,8 +1,9 @@
 //! Constants of a diffuse part: of its cylinder, and of the choice between the model and the cylinder.
 
 use crate::cylinder::{self, Azimuth};
+use hairis::Hit;
 use hairis::model::Direction;
-use hairis::simd::{Broadcast, Lanes, Scalar, Vec3x, lane_struct, lanes3, store3};
+use hairis::simd::{Broadcast, Lanes, Scalar, lane_struct, lanes3, store3};
 
 lane_struct! {
     /// Constants of a diffuse part per material.
@@ -100,29 +101,19 @@ pub(super) fn mean<L: Lanes>([r, g, b]: [L; 3]) -> L {
 impl<C: Scalar> DiffuseMaterial<C> {
     /// Prepares a hit, with a choice that is still to be made.
     #[inline(always)]
-    pub(super) fn prepare<L: Lanes>(&self, wo: Vec3x<L>) -> DiffusePrepared<L::Stored>
+    pub(super) fn prepare<L: Lanes>(&self, hit: Hit<L>) -> DiffusePrepared<L::Stored>
     where
         C: Broadcast<L>,
     {
-        let (zero, one, infinity) = (L::splat(0.0), L::splat(1.0), L::splat(f32::INFINITY));
-        L::stage("part of wo across the fibre; no lobe scatters towards a wo that is not finite");
-        let Vec3x { x, y, z } = wo;
-        let finite = L::and(
-            L::and(x.abs().lt(infinity), y.abs().lt(infinity)),
-            z.abs().lt(infinity),
-        );
-        let wo = Vec3x::new(
-            L::keep(finite, x),
-            L::select(finite, y, one),
-            L::keep(finite, z),
-        );
+        let zero = L::splat(0.0);
+        let (Hit { wo, .. }, finite) = hit.finite();
         let (plane_o, inv_plane) = cylinder::plane(wo, Direction::normalized(wo).vector);
         DiffusePrepared {
             plane_o: store3(plane_o),
             inv_plane_o: inv_plane.store(),
             share: self.share.lanes().store(),
             color: store3(lanes3(&self.color)),
-            kept: L::keep(finite, one).store(),
+            kept: L::keep(finite, L::splat(1.0)).store(),
             choice: DiffuseChoice {
                 selection: [zero.store(), zero.store()],
                 bound: zero.store(),
