@@ -5,6 +5,7 @@ mod params;
 mod part;
 
 pub use params::{DiffusePresets, WithDiffuseDesc, WithDiffuseParams};
+pub(crate) use params::{OWN as DIFFUSE_FIELDS, check_diffuse};
 use part::{DiffuseChoice, DiffuseMaterial, DiffusePrepared, mean};
 
 use crate::cylinder;

@@ -1,8 +1,9 @@
 //! Registry entry of d'Eon's far field, and its parameters as fields.
 
-use super::params::{INDEX, ROUGHNESS, SHARE, TILT};
+use super::params::{INDEX, ROUGHNESS, TILT};
 use super::{DEon, DEonDesc, DEonMaterial, DEonParams};
 use crate::chiang::by_melanin;
+use crate::with_diffuse::DIFFUSE_FIELDS;
 use crate::{Field, Kind, Parameters, Registered, Values};
 use hairis::ParamError;
 use hairis::model::Precision;
@@ -61,22 +62,8 @@ impl Parameters for DEonParams {
             "Concentrations of both pigments.",
         )
         .instead_of("sigma_a"),
-        Field::new(
-            "diffuse",
-            Kind::Number,
-            SHARE,
-            "Share of the diffuse lobe in the light.",
-        )
-        .uniform(0.0, 0.4)
-        .optional(),
-        Field::new(
-            "diffuse_color",
-            Kind::Rgb,
-            SHARE,
-            "Colour of the diffuse lobe.",
-        )
-        .uniform(0.1, 0.9)
-        .optional(),
+        DIFFUSE_FIELDS[0],
+        DIFFUSE_FIELDS[1],
     ];
     const PRESETS: &'static [(&'static str, Self)] = &Self::presets();
 

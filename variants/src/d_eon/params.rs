@@ -1,5 +1,6 @@
 //! Parameters of d'Eon's far field: the description, its checks and the presets.
 
+use crate::with_diffuse::check_diffuse;
 use core::f32::consts::{FRAC_PI_4, PI};
 use hairis::ParamError;
 use hairis::params::{Pigments, Rule, melanin_absorption};
@@ -10,8 +11,6 @@ pub(super) const ROUGHNESS: Rule = Rule::Range([1e-2, 1.0]);
 pub(super) const TILT: Rule = Rule::Range([-FRAC_PI_4, FRAC_PI_4]);
 /// Range of accepted indices of refraction. At an index of 1, TT would be a line.
 pub(super) const INDEX: Rule = Rule::Range([1.1, 3.0]);
-/// Range of the share of the diffuse lobe, and of its colour.
-pub(super) const SHARE: Rule = Rule::Range([0.0, 1.0]);
 
 /// Unchecked parameters of d'Eon's far field. Set the fields that differ from the default, and pass the description to
 /// [`DEonParams::new`].
@@ -135,8 +134,7 @@ impl DEonParams {
         TILT.check("tilt", &[desc.tilt])?;
         INDEX.check("eta", &[desc.eta])?;
         Rule::NotNegative.check("sigma_a", &desc.sigma_a)?;
-        SHARE.check("diffuse", &[desc.diffuse])?;
-        SHARE.check("diffuse_color", &desc.diffuse_color)?;
+        check_diffuse(desc.diffuse, &desc.diffuse_color)?;
         Ok(Self(*desc))
     }
 

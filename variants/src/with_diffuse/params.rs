@@ -70,8 +70,7 @@ impl<P: Copy> WithDiffuseParams<P> {
     /// rejected.
     #[inline]
     pub fn new(desc: &WithDiffuseDesc<P>) -> Result<Self, ParamError> {
-        SHARE.check("diffuse", &[desc.diffuse])?;
-        SHARE.check("diffuse_color", &desc.diffuse_color)?;
+        check_diffuse(desc.diffuse, &desc.diffuse_color)?;
         Ok(Self(*desc))
     }
 }
@@ -103,13 +102,19 @@ impl<P> From<WithDiffuseParams<P>> for WithDiffuseDesc<P> {
     }
 }
 
-/// Fields of the diffuse part, which follow those of the model.
-const OWN: [Field; 2] = [
+/// Checks the share and the colour of a diffuse part.
+pub(crate) fn check_diffuse(diffuse: f32, color: &[f32; 3]) -> Result<(), ParamError> {
+    SHARE.check("diffuse", &[diffuse])?;
+    SHARE.check("diffuse_color", color)
+}
+
+/// Fields of a diffuse part, which follow those of the model, and which d'Eon's far field has of its own.
+pub(crate) const OWN: [Field; 2] = [
     Field::new(
         "diffuse",
         Kind::Number,
         SHARE,
-        "Share of the diffuse part in the light.",
+        "Share of the diffuse lobe in the light.",
     )
     .uniform(0.0, 0.4)
     .optional(),
@@ -117,7 +122,7 @@ const OWN: [Field; 2] = [
         "diffuse_color",
         Kind::Rgb,
         SHARE,
-        "Colour of the diffuse part.",
+        "Colour of the diffuse lobe.",
     )
     .uniform(0.1, 0.9)
     .optional(),
