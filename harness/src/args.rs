@@ -41,7 +41,7 @@ const FORMAT: &str = r#"A request. Angles are in radians, directions of unit len
    "wo":[u,v,w], "wi":[u,v,w]}     or "xi":[lobe,theta,phi] in place of "wi"
 The other models, "kajiya-kay", "chiang" and "d-eon", have fields of their own: see harness/src/guide/eval.md. Builds
 with the feature `every-sampler` also have the samplers "matched-5" and "matched-25", "select":"by-channel", and the
-models "gaussian-diffuse", "cauchy-diffuse" and "chiang-diffuse".
+models "gaussian-diffuse", "cauchy-diffuse", "chiang-diffuse" and "chiang-scattering".
 
 The answer to "wi", and to "xi" (lobe null: discarded, and 0 for the rest):
   {"s":[r,g,b], "pdf":x, "pdf_lobe":[R,TT,TRT-g,glint]}

@@ -7,6 +7,7 @@ mod like;
 mod lobes;
 mod params;
 mod sampling;
+mod scattering;
 mod stand_ins;
 
 pub use far_field::{FarField, OffsetNodes};
@@ -15,6 +16,7 @@ pub use gather::ChiangPrepared;
 pub(crate) use gather::{Four, apart, four, same};
 pub use like::Likeness;
 pub use params::{ChiangDesc, ChiangParams, Shifts};
+pub use scattering::{ScatteringChiang, ScatteringDesc, ScatteringMaterial, ScatteringParams};
 
 pub(crate) use stand_ins::by_melanin;
 

@@ -5,6 +5,7 @@
 //! | [`Cauchy`] in [`hairis::Published`] | the published model with every Gaussian a Cauchy | no | yes | Ou et al. 2012, section 3.3 |
 //! | [`KajiyaKay`] | a diffuse cylinder and one cone of highlights | `kd + ks` of its parameters | one of two forms | Kajiya & Kay 1989 |
 //! | [`Chiang`] | near field, absorption in place of colours | yes | no | Chiang et al. 2016; d'Eon et al. 2011 |
+//! | [`chiang::ScatteringChiang`] | Chiang's fibre with a fake medulla, which widens lobes | yes | no | OSL's BSDL |
 //! | [`DEon`] | far field, absorption and a diffuse part | yes | no | d'Eon 2022 as RTXCR has it; d'Eon et al. 2011 |
 //! | [`WithDiffuse<M>`](WithDiffuse) | any model `M` with a Lambertian cylinder beside its lobes | where `M` does | where `M` is | Lambert's law |
 //!

@@ -252,6 +252,21 @@ impl Field {
     }
 }
 
+/// Returns the fields of a model followed by the fields of what is added to it, and then the first of these again.
+pub(crate) const fn appended(fields: &[Field], own: &[Field]) -> [Field; Values::<f32>::MOST] {
+    let mut all = [own[0]; Values::<f32>::MOST];
+    let mut place = 0;
+    while place < fields.len() + own.len() {
+        all[place] = if place < fields.len() {
+            fields[place]
+        } else {
+            own[place - fields.len()]
+        };
+        place += 1;
+    }
+    all
+}
+
 /// Checked parameters of a model, with the fields that they are made of.
 ///
 /// ```

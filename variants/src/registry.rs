@@ -320,6 +320,8 @@ macro_rules! with_every_sampler {
             CauchyDiffuse: $crate::WithDiffuse<AllCauchy>;
             /// The energy-conserving fibre with a diffuse part.
             ChiangDiffuse: $crate::WithDiffuse<Chiang>;
+            /// The energy-conserving fibre with a fake medulla.
+            ChiangScattering: $crate::chiang::ScatteringChiang;
         }
     };
 }

@@ -2,11 +2,12 @@
 
 use core::f64::consts::PI;
 use hairis::params::Rule;
-use hairis_reference::{ChiangReference, Reference, Selection, bessel_i0_scaled};
+use hairis_reference::{Formulas, Reference, bessel_i0_scaled};
 use hairis_variants::Values;
-use hairis_variants::chiang::Likeness;
+use hairis_variants::chiang::{Likeness, ScatteringChiang};
 
 /// Fibre in the words of Chiang et al. 2016 and of pbrt, which all of these renderers share: what differs is how they come to it.
+#[derive(Clone, Copy)]
 struct Fiber {
     variances: [f64; 4],
     scales: [f64; 3],
@@ -77,9 +78,14 @@ fn printed(fiber: &Fiber, theta_o: f64, theta_i: f64, phi: f64, h: f64) -> [f64;
 
 /// Compares the fibre of these values with the formulas of the renderer, at directions and offsets.
 fn check(renderer: &str, set: impl Fn(Values) -> Values, fiber: &Fiber) {
+    check_at(renderer, set, |_| *fiber);
+}
+
+/// Compares as [`check`] does, with a fibre that depends on `theta_o`.
+fn check_at(renderer: &str, set: impl Fn(Values) -> Values, fiber: impl Fn(f64) -> Fiber) {
     let like = Likeness::find(renderer).expect("in the table");
     let params = like.params(&set(like.defaults())).expect("legal values");
-    let desc = params.desc().map(f64::from);
+    let constants = ScatteringChiang::formulas(&params);
     for (theta_o, theta_i, phi, h) in [
         (0.3, -0.2, 0.4, 0.2),
         (-0.8, 0.9, 2.8, -0.5),
@@ -89,8 +95,8 @@ fn check(renderer: &str, set: impl Fn(Values) -> Values, fiber: &Fiber) {
         let wo = [f64::sin(theta_o), f64::cos(theta_o), 0.0];
         let (sin, cos) = f64::sin_cos(theta_i);
         let wi = [sin, cos * f64::cos(phi), cos * f64::sin(phi)];
-        let (value, _) = ChiangReference::prepare(&desc, Selection::Mean, wo, h).eval_pdf(wi);
-        let want = printed(fiber, theta_o, theta_i, phi, h);
+        let (value, _) = ScatteringChiang::point(&constants, wo, h).eval_pdf(wi);
+        let want = printed(&fiber(theta_o), theta_o, theta_i, phi, h);
         for c in 0..3 {
             let error = value[c] * cos / want[c] - 1.0;
             // Parameters are rounded to single precision, and the exponent of a narrow lobe magnifies that.
@@ -218,13 +224,93 @@ fn osl() {
             .with("TT_tint", &[0.9, 0.2, 0.1])
     };
     check("osl", set, &fiber);
-    let like = Likeness::find("osl").expect("in the table");
-    let refused = like.params(&set(like.defaults()).with("scattering", &[0.3]));
-    let error = refused.expect_err("a width that depends on wo");
-    assert_eq!(
-        (error.field(), error.rule()),
-        ("scattering", Rule::Range([0.0, 0.0]))
-    );
+    for scattering in [0.2_f32, 0.6, 1.0] {
+        // variances
+        let share = f64::from(scattering).powi(2).min(0.99);
+        let scattered = |theta_o: f64| {
+            let unscattered = (1.0 - share).powf(1.0 / theta_o.cos());
+            let grown = |roughness: f64, lost: f64| (roughness + lost).min(1.0);
+            let (tt, trt) = (1.0 - unscattered, 1.0 - unscattered * unscattered);
+            let wide = 4.0 * longitudinal(grown(0.4, trt));
+            Fiber {
+                variances: [lrough, 0.25 * longitudinal(grown(0.6, tt)), wide, wide],
+                scales: [
+                    azimuthal(0.35),
+                    azimuthal(grown(0.35, tt)),
+                    azimuthal(grown(0.35, trt)),
+                ],
+                ..fiber
+            }
+        };
+        let set = |values| set(values).with("scattering", &[scattering]);
+        check_at("osl", set, scattered);
+        let like = Likeness::find("osl").expect("in the table");
+        let entry = like.entry(&set(like.defaults()));
+        if cfg!(feature = "every-sampler") {
+            assert_eq!(entry.expect("legal values").0.name(), "chiang-scattering");
+        } else {
+            let error = entry.expect_err("no entry for widths that depend on wo");
+            assert_eq!(
+                (error.field(), error.rule()),
+                ("scattering", Rule::Range([0.0, 0.0]))
+            );
+        }
+    }
+}
+
+#[test]
+fn rtxcr() {
+    let (alpha, v) = (3.0_f64.to_radians(), longitudinal(0.25));
+    let pigments = [[0.506, 0.841, 1.653], [0.343, 0.733, 1.924]];
+    let fiber = Fiber {
+        variances: [v, 0.25 * v, 4.0 * v, 4.0 * v],
+        scales: [azimuthal(0.3); 3],
+        turns: [-2.0 * alpha, alpha, 4.0 * alpha, 0.0],
+        eta: 1.5,
+        sigma_a: of_color([0.5, 0.3, 0.1], 0.3),
+        tints: WHITE,
+    };
+    let set = |values: Values| {
+        values
+            .with("longitudinalRoughness", &[0.25])
+            .with("azimuthalRoughness", &[0.3])
+            .with("cuticleAngleInDegrees", &[3.0])
+            .with("ior", &[1.5])
+            .with("baseColor", &[0.5, 0.3, 0.1])
+    };
+    check("rtxcr", set, &fiber);
+    let wide = longitudinal(0.5);
+    let separate = Fiber {
+        variances: [v, longitudinal(0.2), wide, wide],
+        scales: [azimuthal(0.3), azimuthal(0.4), azimuthal(0.2)],
+        ..fiber
+    };
+    let set_separate = |values| {
+        set(values)
+            .with("longitudinalRoughnessTT", &[0.2])
+            .with("longitudinalRoughnessTRT", &[0.5])
+            .with("azimuthalRoughnessTT", &[0.4])
+            .with("azimuthalRoughnessTRT", &[0.2])
+    };
+    check("rtxcr", set_separate, &separate);
+    let melanin = |values| {
+        set(values)
+            .with("melanin", &[0.6])
+            .with("melaninRedness", &[0.3])
+    };
+    let quantity = -(1.0_f64 - 0.6).ln();
+    let normalized = Fiber {
+        sigma_a: of_pigments(pigments, [0.7 * quantity, 0.3 * quantity]),
+        ..fiber
+    };
+    check("rtxcr", melanin, &normalized);
+    let quantity = 0.6 * 0.6 * 2.4;
+    let physics = Fiber {
+        sigma_a: of_pigments(pigments, [0.7 * quantity, 0.3 * quantity]),
+        ..fiber
+    };
+    let set_physics = |values| melanin(values).with_word("absorptionModel", "physics");
+    check("rtxcr", set_physics, &physics);
 }
 
 #[test]
@@ -272,18 +358,15 @@ fn pbrt_and_mitsuba() {
 #[test]
 fn defaults_and_refusals() {
     for like in Likeness::ALL {
-        // Of OSL, roughness and absorption have no default.
-        let is_whole = like
-            .fields
-            .iter()
-            .all(|field| field.optional || like.name != "osl");
+        // Of OSL, roughness and absorption have no default, and hardly a field of RTXCR.
+        let is_whole = !["osl", "rtxcr"].contains(&like.name);
         assert_eq!(
             like.params(&like.defaults()).is_ok(),
             is_whole,
             "{}",
             like.name
         );
-        for field in like.fields {
+        for field in like.fields.iter().filter(|field| field.rule.is_some()) {
             let bad = vec![-1e9; field.kind.width()];
             let refused = like.params(&like.defaults().with(field.name, &bad));
             assert_eq!(

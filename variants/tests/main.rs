@@ -39,6 +39,8 @@ mod params;
 #[cfg(not(hairis_one))]
 mod registry;
 mod rows;
+#[cfg(any(not(hairis_one), hairis_one = "chiang"))]
+mod scattering;
 #[cfg(not(hairis_one))]
 mod values;
 #[cfg(not(hairis_one))]

@@ -186,7 +186,7 @@ impl MaterialSpec {
                     "given together with like; give one of them",
                 ));
             }
-            let params = Self::like(model, like, given("params")?.clone())?;
+            let params = Self::like(like, given("params")?.clone())?;
             let is_chosen = choice.is_some();
             return Ok(Self {
                 is_chosen,
@@ -229,7 +229,7 @@ impl MaterialSpec {
     }
 
     /// Reads the parameters of another renderer, whose name is `like`. They are converted in single precision.
-    fn like(model: ModelId, like: &Json, params: Json) -> Result<Self, String> {
+    fn like(like: &Json, params: Json) -> Result<Self, String> {
         let names: Vec<&str> = Likeness::ALL.iter().map(|like| like.name).collect();
         let like = &Likeness::ALL[word("like", like, &names)?];
         let params = params.fields("params", &names_of(like.fields))?;
@@ -237,8 +237,8 @@ impl MaterialSpec {
         let defaults = like.defaults();
         let (values, exact) = replaced("params", defaults, defaults.map(f64::from), &params)?;
         let refused = |error| refused("params", like.fields, &error, &exact);
-        let fiber = like.params(&values).map_err(refused)?;
-        Self::new(model, fiber.values()).map_err(refused)
+        let (model, values) = like.entry(&values).map_err(refused)?;
+        Self::new(model, values).map_err(refused)
     }
 
     /// Reads all materials of a text: objects with the fields of a request of `hairis eval`, one after another. The fields of the query

@@ -153,7 +153,7 @@ fn like_another_renderer() {
         (
             "arnold",
             "{}",
-            r#"like: must be "cycles" or "materialx" or "osl" or "pbrt" or "mitsuba", got "arnold""#,
+            r#"like: must be "cycles" or "materialx" or "osl" or "pbrt" or "mitsuba" or "rtxcr", got "arnold""#,
         ),
         (
             "osl",
@@ -162,8 +162,8 @@ fn like_another_renderer() {
         ),
         (
             "osl",
-            r#"{"lroughness":0.3,"troughness":0.3,"aroughness":0.3,"absorption":[0,0,0],"scattering":0.5}"#,
-            "params.scattering: must be in [0, 0], got 0.5",
+            r#"{"lroughness":0.3,"troughness":0.3,"aroughness":0.3,"absorption":[0,0,0],"scattering":1.5}"#,
+            "params.scattering: must be in [0, 1], got 1.5",
         ),
         (
             "cycles",

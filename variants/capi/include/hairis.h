@@ -175,9 +175,9 @@ hairis_status hairis_params_init(hairis_params *to, const char *model, const cha
 hairis_status hairis_params_set(hairis_params *params, const char *field, const float *numbers, size_t count,
                                 hairis_error *error);
 hairis_status hairis_params_set_word(hairis_params *params, const char *field, const char *word, hairis_error *error);
-/* Initialises parameters of chiang in the terms of another renderer, with its defaults: "cycles", "materialx", "osl", "pbrt" or
- * "mitsuba". hairis_params_set and hairis_params_set_word then take that renderer's names, which hairis_field_describe lists for the
- * index in to->model. hairis_material_init converts, and refuses what is outside the range of either. */
+/* Initialises parameters of chiang in the terms of another renderer, with its defaults: "cycles", "materialx", "osl", "pbrt",
+ * "mitsuba" or "rtxcr". hairis_params_set and hairis_params_set_word then take that renderer's names, which hairis_field_describe lists
+ * for the index in to->model. hairis_material_init converts, and refuses what is outside the range of either. */
 hairis_status hairis_params_like(hairis_params *to, const char *renderer, hairis_error *error);
 /* Sets the absorption of chiang or d-eon, or the intensities of TT and TRT of gaussian or cauchy, with which hair shows a colour, linear
  * RGB. of is "mass" (hair of a head), "fibre" (one fibre from its side), both under uniform light, or "chiang" (the published fit of

@@ -2,7 +2,7 @@
 
 use hairis::ParamError;
 use hairis_variants::chiang::Likeness;
-use hairis_variants::{Field, ModelId, Parameters, Values};
+use hairis_variants::{Field, ModelId, Values};
 
 /// Returns the model of an index, or `None` if the index is out of range.
 pub(crate) fn at(index: u32) -> Option<ModelId> {
@@ -44,10 +44,10 @@ impl Subject {
             .map_or_else(|| self.id.fields(), |like| like.fields)
     }
 
-    /// Returns the values of the model's own fields.
-    pub(crate) fn own(self, values: Values) -> Result<Values, ParamError> {
+    /// Returns the model, and the values of its own fields.
+    pub(crate) fn own(self, values: Values) -> Result<(ModelId, Values), ParamError> {
         self.like
-            .map_or(Ok(values), |like| Ok(like.params(&values)?.values()))
+            .map_or(Ok((self.id, values)), |like| like.entry(&values))
     }
 }
 

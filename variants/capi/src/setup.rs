@@ -192,11 +192,9 @@ pub unsafe fn values_of(
 ) -> Result<(ModelId, Values), i32> {
     // SAFETY: the caller's promise.
     let (subject, values) = unsafe { read(params, error) }?;
-    match subject.own(values) {
-        Ok(values) => Ok((subject.id, values)),
-        // SAFETY: the caller's promise.
-        Err(fault) => Err(unsafe { refuse_value(error, &fault) }),
-    }
+    // SAFETY: the caller's promise.
+    let refuse = |fault| unsafe { refuse_value(error, &fault) };
+    subject.own(values).map_err(refuse)
 }
 
 /// Returns parameters of Chiang's fibre in the terms of another renderer, or `None` if the list has no such renderer.

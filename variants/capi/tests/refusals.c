@@ -81,7 +81,7 @@ static void setup(void) {
   want(memcmp(&params, &before, sizeof params) == 0, "parameters change where an artist's control is refused");
 
   refused(hairis_params_like(&params, "blender", &error), HAIRIS_NAME, "renderer", -1,
-          "renderer must be one of cycles, materialx, osl, pbrt, mitsuba, and to not NULL; got \"blender\"");
+          "renderer must be one of cycles, materialx, osl, pbrt, mitsuba, rtxcr, and to not NULL; got \"blender\"");
   refused(hairis_params_like(NULL, "cycles", &error), HAIRIS_NAME, "renderer", -1, "not NULL; got \"cycles\"");
   want(memcmp(&params, &before, sizeof params) == 0, "parameters change where a renderer is refused");
   const float color[3] = {0.5f, -1, 0.2f};

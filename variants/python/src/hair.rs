@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 /// energy : {"conserving", "raw", "scaled"}
 ///     With "conserving", no direction returns more light than arrives. With "raw", the model stays as it is. With "scaled", the
 ///     model is darker but stays reciprocal.
-/// like : {"cycles", "materialx", "osl", "pbrt", "mitsuba"}, optional
+/// like : {"cycles", "materialx", "osl", "pbrt", "mitsuba", "rtxcr"}, optional
 ///     Renderer whose names and defaults the fields of "chiang" have; the material has our fields.
 /// color_of : {"mass", "fibre", "chiang"}, optional
 ///     Subject that shows the field `color`, linear RGB, under uniform light: a head of such hair, one fibre from its side, or a mass by the

@@ -36,7 +36,7 @@ def case(n: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.f
 @pytest.mark.parametrize(("model", "preset", "more"), DEFAULTS + [("chiang", "brown", more) for more in IN_PLACE])
 def test_fields_against_differences(model: str, preset: str, more: dict[str, Any]) -> None:
     wo, wi, d_value, h = case(3000)
-    hair = hairis.Material(model, preset, energy="raw", **more, **INSIDE.get(model.removesuffix("-diffuse"), {}))
+    hair = hairis.Material(model, preset, energy="raw", **more, **INSIDE.get(model.removesuffix("-diffuse").removesuffix("-scattering"), {}))
     columns, d_fields = hair.eval_grad(wo, wi, d_value, h)
     assert d_fields.keys() == {name for name, value in hair.fields.items() if not isinstance(value, str)}
     assert (bits(columns["value"]) == bits(hair.eval_hits(wo, wi, h)["value"])).all()

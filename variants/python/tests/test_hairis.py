@@ -231,6 +231,13 @@ def test_json_of_requests() -> None:
         ("osl", {"lroughness": 0.25, "troughness": 0.3, "aroughness": 0.4, "absorption": [0.1, 0.2, 0.3], "R_tint": [0.5, 0.6, 0.7]}),
         ("pbrt", {"beta_n": 0.4, "sigma_a": [0.1, 0.2, 0.4]}),
         ("mitsuba", {"eumelanin": 1.3}),
+        (
+            "rtxcr",
+            {
+                "longitudinalRoughness": 0.3, "azimuthalRoughness": 0.4, "ior": 1.5, "cuticleAngleInDegrees": 2, "melanin": 0.5,
+                "absorptionModel": "physics", "azimuthalRoughnessTT": 0.3,
+            },
+        ),
     ],
 )
 def test_other_renderers_names(like: str, fields: dict[str, Any]) -> None:

@@ -49,7 +49,7 @@ def refusals() -> list[tuple[type[Exception], str, Call]]:
         (ValueError, 'preset must be one of default, blond, brown, red, black, white, got "green"', lambda: make("chiang", "green")),
         (ValueError, 'preset must have no NUL, got "\\0"', lambda: make("chiang", "\0")),
         (TypeError, "preset must be a word, got <class 'int'>", lambda: make("chiang", 1)),
-        (ValueError, 'like must be one of cycles, materialx, osl, pbrt, mitsuba, got "blender"', lambda: make("chiang", like="blender")),
+        (ValueError, 'like must be one of cycles, materialx, osl, pbrt, mitsuba, rtxcr, got "blender"', lambda: make("chiang", like="blender")),
         (ValueError, 'model must be "chiang" where like is given, got "gaussian"', lambda: make(like="cycles")),
         (ValueError, 'preset must be None where like is given, got "blond"', lambda: make("chiang", "blond", like="cycles")),
         (TypeError, "like must be a word, got <class 'int'>", lambda: make("chiang", like=1)),

@@ -17,6 +17,7 @@ use hairis_variants::ChiangDesc;
 pub(crate) use azimuth::wrap;
 pub use bessel::bessel_i0_scaled;
 pub(crate) use cone::Cone;
+use parameters::Medulla;
 pub use parameters::{ChiangFormulas, Selection};
 
 /// Lobe of all paths with two and more internal reflections, TRRT and beyond.
@@ -66,6 +67,7 @@ pub struct ChiangConstants<T> {
     shifts: PerLobe<[T; 2]>,
     logistics: PerLobe<Logistic<T>>,
     tints: PerLobe<[T; 3]>,
+    medulla: Option<Medulla<T>>,
 }
 
 impl<T: Real> ChiangConstants<T> {
@@ -91,7 +93,16 @@ impl<T: Real> ChiangConstants<T> {
                 parameters.tint_trt,
                 parameters.tint_trt,
             ]),
+            medulla: None,
         }
+    }
+
+    /// Adds the medulla of [`ScatteringChiang`](hairis_variants::chiang::ScatteringChiang) to a fibre with these parameters.
+    #[inline]
+    #[must_use]
+    pub fn with_scattering(self, parameters: &ChiangDesc<T>, scattering: T) -> Self {
+        let medulla = (scattering > T::default()).then(|| Medulla::new(parameters, scattering));
+        Self { medulla, ..self }
     }
 
     /// Computes the constants of the direction `wo` and the offset `h`.
@@ -107,12 +118,20 @@ impl<T: Real> ChiangConstants<T> {
         } = fixed(wo);
         let h = h.max(-one).min(one);
 
+        let (mut variances, mut logistics) = (self.variances, self.logistics);
+        if let Some(medulla) = &self.medulla {
+            let [[v_tt, v_trt], [s_tt, s_trt]] = medulla.widths(cos_theta_o.max(number(1e-18)));
+            variances = four([variances[Lobe::R], v_tt, v_trt, v_trt]);
+            let [s_tt, s_trt] = [s_tt, s_trt].map(Logistic::new);
+            logistics = PerLobe::padded([logistics[Lobe::R], s_tt], s_trt);
+        }
+
         // Cones about theta' = theta_o - shift, folded back beyond a pole.
         let cone = |lobe: Lobe| {
             let [sin, cos] = self.shifts[lobe];
             let folded = (cos_theta_o * cos + sin_theta_o * sin).abs();
             Cone::new(
-                self.variances[lobe],
+                variances[lobe],
                 sin_theta_o * cos - cos_theta_o * sin,
                 folded,
             )
@@ -142,7 +161,7 @@ impl<T: Real> ChiangConstants<T> {
         ChiangReference {
             phi_o,
             cones: PerLobe::padded([cone(Lobe::R), cone(Lobe::TT), cone(Lobe::TRT)], cone(REST)),
-            logistics: self.logistics,
+            logistics,
             centres: four([centre(0.0), centre(1.0), centre(2.0), centre(3.0)]),
             fresnel,
             path_length,

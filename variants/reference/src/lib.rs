@@ -10,6 +10,7 @@
 //! | [`Matched`](hairis::Matched) over any bell | [`MatchedReference`] | ours |
 //! | [`KajiyaKay`](hairis_variants::KajiyaKay) | [`KajiyaKayReference`] | Kajiya & Kay 1989 |
 //! | [`Chiang`](hairis_variants::Chiang) | [`ChiangReference`] | Chiang et al. 2016 |
+//! | [`ScatteringChiang`](hairis_variants::chiang::ScatteringChiang) | [`ChiangConstants::with_scattering`] | OSL's BSDL |
 //! | [`DEon`](hairis_variants::DEon) | [`DEonReference`], and as RTXCR has it [`RtxcrReference`] | d'Eon 2022 |
 //!
 //! All implement [`Reference`], and `Box<dyn Reference<f64>>` is the handle of a model chosen at run time: see [`reference()`] for

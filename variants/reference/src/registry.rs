@@ -1,20 +1,21 @@
 //! Formulas of the models of the registry.
 
-use crate::chiang::{ChiangConstants, ChiangFormulas, ChiangReference, Selection};
+mod chiang;
+
 use crate::d_eon::{DEonReference, absorption_of_melanin};
 use crate::interface::Reference;
 use crate::kajiya_kay::{KajiyaKayConstants, KajiyaKayReference, cosine_power_integral};
 use crate::published::{HairReference, MatchedReference, Shape};
 use crate::real::Real;
 use crate::with_diffuse::{WithDiffuseConstants, WithDiffuseReference};
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::PI;
 use core::fmt::Debug;
 use hairis::params::HairDesc;
-use hairis::{Gaussian, HairParams, Lobe, Matched, ParamError, Published};
+use hairis::{Gaussian, HairParams, Matched, ParamError, Published};
 use hairis_variants::{
-    AllCauchy, Cauchy, Chiang, ChiangDesc, ChiangParams, DEon, DEonDesc, DEonParams,
-    DiffusePresets, KajiyaKay, KajiyaKayDesc, KajiyaKayParams, ModelId, Parameters, Registered,
-    RegisteredBell, Values, WithDiffuse, WithDiffuseParams, hair_desc,
+    AllCauchy, Cauchy, Chiang, DEon, DEonDesc, DEonParams, DiffusePresets, KajiyaKay,
+    KajiyaKayDesc, KajiyaKayParams, ModelId, Parameters, Registered, RegisteredBell, Values,
+    WithDiffuse, WithDiffuseParams, hair_desc,
 };
 
 /// Model of the registry, paired with its formulas.
@@ -320,68 +321,6 @@ impl Formulas for KajiyaKay {
         let (desc, [_, v, w]) = (params.desc(), wi);
         let peak = 0.5 / (PI * cosine_power_integral(f64::from(desc.exponent) + 2.0));
         desc.ks.map(|ks| 1e-17 * f64::from(ks) * peak / v.hypot(w))
-    }
-}
-
-impl<const BY_CHANNEL: bool> Formulas for Chiang<BY_CHANNEL> {
-    type Constants<T: Real> = ChiangConstants<T>;
-    type Point<T: Real> = ChiangReference<T>;
-    // 1.6 times the largest that searches uphill found; `Reference::error_bound` is 8e-5 and less for roughnesses of .1.
-    const ACCURACY: Accuracy = Accuracy {
-        value: 4.5e-5,
-        pdf: 4.5e-5,
-        sample_value: 4.5e-5,
-        sample_pdf: 4.5e-5,
-        sample_weight: 1e-4,
-        cdf: 0.0,
-        slack_in_pdf: true,
-    };
-
-    #[inline]
-    fn formulas<T: Real>(params: &ChiangParams) -> ChiangConstants<T> {
-        ChiangConstants::new(&params.desc().map(T::from_f32), Selection::of(BY_CHANNEL))
-    }
-
-    #[inline]
-    fn exact_formulas<T: Real>(params: &ChiangParams, exact: &Values<T>) -> ChiangConstants<T> {
-        let parameters = ChiangDesc {
-            shifts: params.desc().shifts,
-            ..ChiangDesc::of_values(exact)
-        };
-        let parameters = if exact.has("cuticle_angle") {
-            let [angle] = exact.get("cuticle_angle");
-            parameters.with_cuticle_angle(angle)
-        } else {
-            parameters
-        };
-        let parameters = if exact.has("melanin") {
-            let [eumelanin, pheomelanin] = exact.get("melanin");
-            parameters.with_melanin(eumelanin, pheomelanin)
-        } else if exact.has("melanin_amount") {
-            let [amount, redness] = exact.get("melanin_amount");
-            parameters.with_melanin_amount(amount, redness)
-        } else if exact.has("color") {
-            parameters.with_color(exact.get("color"))
-        } else {
-            parameters
-        };
-        ChiangConstants::new(&parameters, Selection::of(BY_CHANNEL))
-    }
-
-    #[inline]
-    fn point<T: Real>(constants: &ChiangConstants<T>, wo: [T; 3], h: T) -> ChiangReference<T> {
-        constants.prepare(wo, h)
-    }
-
-    /// Returns the slack of the lobes, whose errors grow with their exponent: from `exp(-12)` of the peak down they are absolute.
-    fn slack(params: &ChiangParams, _wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
-        let (p, [_, v, w]) = (params.desc().map(f64::from), wi);
-        let peaks = [Lobe::R, Lobe::TT, Lobe::TRT].map(|lobe| {
-            let width = (TAU * p.variances()[lobe]).sqrt() * p.scales()[lobe];
-            0.25 * p.width_m[0] * p.width_n[0] / width
-        });
-        let peak = peaks[0];
-        [Self::ACCURACY.value * (-12.0_f64).exp() * peak / v.hypot(w); 3]
     }
 }
 

@@ -3,7 +3,7 @@
 use core::f32::consts::{FRAC_PI_4, PI};
 use hairis::ParamError;
 use hairis::model::Precision;
-use hairis::params::{Pigments, Rule, melanin_absorption, melanin_concentrations};
+use hairis::params::{Pigments, Rule, melanin_absorption};
 use hairis::simd::Lanes;
 
 /// Range of accepted roughnesses.
@@ -164,102 +164,6 @@ impl ChiangDesc {
         })
     }
 
-    /// Sets the pigments, of which later calls make melanin: see [`with_melanin`](Self::with_melanin).
-    ///
-    /// ```
-    /// use hairis::params::Pigments;
-    /// use hairis_variants::ChiangDesc;
-    /// let auburn = ChiangDesc::default().with_pigments(Pigments::CYCLES).with_melanin_amount(0.7, 0.6)?;
-    /// assert!((auburn.sigma_a[0] - 0.491_46).abs() < 1e-4);
-    /// # Ok::<(), hairis::ParamError>(())
-    /// ```
-    #[inline]
-    #[must_use]
-    pub const fn with_pigments(self, pigments: Pigments) -> Self {
-        Self {
-            eumelanin: pigments.eumelanin,
-            pheomelanin: pigments.pheomelanin,
-            ..self
-        }
-    }
-
-    /// Returns the pigments.
-    #[inline]
-    #[must_use]
-    pub const fn pigments(&self) -> Pigments {
-        Pigments {
-            eumelanin: self.eumelanin,
-            pheomelanin: self.pheomelanin,
-        }
-    }
-
-    /// Sets the absorption of these concentrations of melanin: see [`Pigments::absorption`]. Set the pigments first.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if a concentration is negative or not finite.
-    #[inline]
-    pub fn with_melanin(self, eumelanin: f32, pheomelanin: f32) -> Result<Self, ParamError> {
-        let melanin = [eumelanin, pheomelanin];
-        Rule::NotNegative.check("melanin", &melanin)?;
-        Ok(Self {
-            sigma_a: self.pigments().absorption(melanin).map(|c| c.min(f32::MAX)),
-            ..self
-        })
-    }
-
-    /// Sets the absorption by an artist's controls of melanin, its `amount` and its `redness`: see [`melanin_concentrations`].
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if `amount` or `redness` is outside `[0, 1]`.
-    ///
-    /// ```
-    /// use hairis_variants::{ChiangDesc, ChiangParams};
-    /// let auburn = ChiangParams::new(&ChiangDesc::default().with_melanin_amount(0.7, 0.6)?)?;
-    /// assert!(auburn.desc().sigma_a[2] > auburn.desc().sigma_a[0]);
-    /// # Ok::<(), hairis::ParamError>(())
-    /// ```
-    #[inline]
-    pub fn with_melanin_amount(self, amount: f32, redness: f32) -> Result<Self, ParamError> {
-        let [eumelanin, pheomelanin] = melanin_concentrations(amount, redness)?;
-        self.with_melanin(eumelanin, pheomelanin)
-    }
-
-    /// Sets the absorption with which a mass of such hair has approximately this colour.
-    ///
-    /// `sigma_a = (ln color / (5.969 - .215 n + 2.532 n^2 - 10.73 n^3 + 5.574 n^4 + .245 n^5))^2`, with `n` the `beta_n`
-    ///
-    /// - Source: Chiang et al. 2016, section 4. The formula inverts multiple scattering in a mass of hair, not the colour of one fibre.
-    /// - Domain: `color` is linear RGB in `[0, 1]`; channels below 1e-3 count as 1e-3. Set `beta_n` first: the result depends on it.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if a channel is outside `[0, 1]`, or if `beta_n` is outside its range.
-    #[inline]
-    pub fn with_color(self, color: [f32; 3]) -> Result<Self, ParamError> {
-        ROUGHNESS.check("beta_n", &[self.beta_n])?;
-        SHARE.check("color", &color)?;
-        let by = 1.0 / color_denominator(self.beta_n);
-        let absorption = |c: f32| {
-            let log = libm::logf(c.max(LEAST_COLOR)) * by;
-            log * log
-        };
-        Ok(Self {
-            sigma_a: color.map(absorption),
-            ..self
-        })
-    }
-
-    /// Returns the approximate colour of a mass of such hair, as the inverse of [`with_color`](Self::with_color).
-    #[inline]
-    #[must_use]
-    pub fn color(&self) -> [f32; 3] {
-        let scale = color_denominator(self.beta_n);
-        self.sigma_a
-            .map(|sigma| libm::expf(-libm::sqrtf(sigma) * scale))
-    }
-
     /// Returns the longitudinal width of `beta_m` in degrees: `sqrt(v)` of [`longitudinal_variance`](Self::longitudinal_variance).
     #[inline]
     #[must_use]
@@ -307,17 +211,57 @@ pub(super) fn variance<W: Precision>(m: W) -> W {
 /// Returns the longitudinal width of R for a `beta_m`, which is the root of its variance.
 #[inline]
 pub(super) fn root<W: Precision>(m: W) -> W {
-    let c = W::constant;
-    m * (c(0.726) + m * (c(0.812) + c(3.7) * m.power(18)))
+    m * ALONG.over(m)
 }
 
 /// Returns the scale of the azimuthal logistic for a `beta_n`, in radians.
 #[inline]
 pub(super) fn scale<W: Precision>(n: W) -> W {
-    let c = W::constant;
-    c(libm::sqrt(core::f64::consts::PI / 8.0))
-        * n
-        * (c(0.265) + n * (c(1.194) + c(5.372) * n.power(20)))
+    W::constant(ABOUT_BY) * n * ABOUT.over(n)
+}
+
+/// Width of a lobe by its roughness `x`: `a x + b x^2 + c x^n`, after Chiang et al. 2016, section 4.
+pub(super) struct Width {
+    pub(super) terms: [f64; 3],
+    pub(super) power: u8,
+}
+
+/// Width along the fibre.
+pub(super) const ALONG: Width = Width {
+    terms: [0.726, 0.812, 3.7],
+    power: 20,
+};
+/// Width about the fibre, over the root of pi / 8.
+pub(super) const ABOUT: Width = Width {
+    terms: [0.265, 1.194, 5.372],
+    power: 22,
+};
+/// Root of pi / 8, which has no constant function.
+pub(super) const ABOUT_BY: f64 = 0.626_657_068_657_750_1;
+
+impl Width {
+    /// Returns the width over the roughness.
+    #[inline]
+    pub(super) fn over<W: Precision>(&self, x: W) -> W {
+        let [a, b, c] = self.terms.map(W::constant);
+        a + x * (b + c * x.power(self.power - 2))
+    }
+
+    /// Returns the roughness of a width, which may be that of a roughness of 1.2.
+    #[inline]
+    pub(super) fn roughness<W: Precision>(&self, width: W) -> W {
+        let n = f64::from(self.power);
+        let [a, b, c] = self.terms;
+        let [a, b, b_slope, c, c_slope] = [a, b, 2.0 * b, (n - 1.0) * c, n * c].map(W::constant);
+        // Newton's steps come from above. Where the last term is the largest each is a twentieth, and there are no more than ten of them.
+        let (most, linear) = (W::constant(1.2), width / a);
+        let mut x = W::select(linear.lt(most), linear, most);
+        for _ in 0..15 {
+            let power = x.power(self.power - 2);
+            x = (width + x * x * (b + c * power)) / (a + x * (b_slope + c_slope * power));
+        }
+        x
+    }
 }
 
 /// Returns the shifts of the lobes in radians; the mask is set for [`Shifts::SmallAngle`].
@@ -342,17 +286,6 @@ impl Default for ChiangDesc {
     fn default() -> Self {
         Self::DEFAULT
     }
-}
-
-/// Coefficients of the denominator in the absorption of a colour, by powers of the azimuthal roughness: Chiang et al. 2016, section 4.
-pub(super) const COLOR: [f32; 6] = [5.969, -0.215, 2.532, -10.73, 5.574, 0.245];
-/// Least channel of a colour that the absorption distinguishes.
-pub(super) const LEAST_COLOR: f32 = 1e-3;
-
-/// Returns the denominator in the absorption of a colour.
-#[inline]
-fn color_denominator(n: f32) -> f32 {
-    COLOR.iter().rev().fold(0.0, |sum, c| c + n * sum)
 }
 
 /// Parameters of the energy-conserving fibre that have passed all checks.

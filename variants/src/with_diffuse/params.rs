@@ -1,5 +1,6 @@
 //! Parameters of a model with a diffuse part: the description, its checks, its fields and the presets.
 
+use crate::parameters::appended;
 use crate::{ChiangParams, Field, Kind, Parameters, Values};
 use hairis::params::Rule;
 use hairis::{HairParams, ParamError};
@@ -133,20 +134,16 @@ const PRESETS: usize = 16;
 
 impl<P: Parameters> WithDiffuseParams<P> {
     const ALL_FIELDS: [Field; Values::<f32>::MOST] = {
-        let mut all = [OWN[0]; Values::<f32>::MOST];
         let mut place = 0;
         while place < P::FIELDS.len() {
-            let field = P::FIELDS[place];
+            let name = P::FIELDS[place].name;
             assert!(
-                field.name.len() < 7 || !matches!(field.name.as_bytes().split_at(7).0, b"diffuse"),
+                name.len() < 7 || !matches!(name.as_bytes().split_at(7).0, b"diffuse"),
                 "the model has a diffuse part of its own"
             );
-            all[place] = field;
             place += 1;
         }
-        all[place] = OWN[0];
-        all[place + 1] = OWN[1];
-        all
+        appended(P::FIELDS, &OWN)
     };
 
     /// Presets of the model, each with a fifth of the light in a diffuse part, and the first of them again.

@@ -111,13 +111,14 @@ impl Bound {
     }
 }
 
-/// Returns the bounds of every model and sampler, but of samplers that differ from one of these by constants. A model with a diffuse part has
-/// the bounds of the model alone.
+/// Returns the bounds of every model and sampler, but of samplers that differ from one of these by constants. A model with a diffuse part
+/// or with scattering has the bounds of the model alone.
 fn bounds() -> Vec<Bound> {
     let words = ["published", "matched", "mean"];
     let is_one = |model: &&ModelId| model.choice().is_none_or(|(_, word)| words.contains(&word));
     let of = |model: &ModelId| [accuracy::bounds(*model), energy::bounds(*model)].concat();
-    let is_alone = |model: &&ModelId| !model.name().ends_with("-diffuse");
+    let ends = ["-diffuse", "-scattering"];
+    let is_alone = |model: &&ModelId| !ends.iter().any(|end| model.name().ends_with(end));
     let models = ModelId::ALL.iter().filter(is_one).filter(is_alone);
     models.flat_map(of).collect()
 }

@@ -108,17 +108,14 @@ impl<T: Real> ChiangFormulas<T> for ChiangDesc<T> {
 
     #[inline]
     fn variances(&self) -> PerLobe<T> {
-        let (number, m) = (T::from_f64, self.beta_m);
-        let root = number(0.726) * m + number(0.812) * m * m + number(3.7) * m.powf(number(20.0));
+        let root = along(self.beta_m);
         let [r, tt, trt] = self.width_m.map(|width| width * root * (width * root));
         PerLobe::padded([r, tt], trt)
     }
 
     #[inline]
     fn scales(&self) -> PerLobe<T> {
-        let (number, n) = (T::from_f64, self.beta_n);
-        let sum = number(0.265) * n + number(1.194) * n * n + number(5.372) * n.powf(number(22.0));
-        let scale = (T::PI / number(8.0)).sqrt() * sum;
+        let scale = about(self.beta_n);
         let [r, tt, trt] = self.width_n.map(|width| width * scale);
         PerLobe::padded([r, tt], trt)
     }
@@ -132,5 +129,79 @@ impl<T: Real> ChiangFormulas<T> for ChiangDesc<T> {
             Shifts::SmallAngle => [two * self.eta - two, number(4.0) * self.eta - two],
         };
         PerLobe::padded([-two * tilt, tt * tilt, trt * tilt], T::default())
+    }
+}
+
+/// Computes the longitudinal width of a roughness.
+fn along<T: Real>(m: T) -> T {
+    let number = T::from_f64;
+    number(0.726) * m + number(0.812) * m * m + number(3.7) * m.powf(number(20.0))
+}
+
+/// Computes the scale of the azimuthal logistic of a roughness, rad.
+fn about<T: Real>(n: T) -> T {
+    let number = T::from_f64;
+    let sum = number(0.265) * n + number(1.194) * n * n + number(5.372) * n.powf(number(22.0));
+    (T::PI / number(8.0)).sqrt() * sum
+}
+
+/// Medulla of OSL's fibre, which widens TT, TRT and the rest by the share of the light that it has scattered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Medulla<T> {
+    /// Optical depth of a passage across the fibre.
+    depth: T,
+    /// Roughnesses of TT and TRT along the fibre, and about it.
+    along: [T; 2],
+    about: [T; 2],
+}
+
+impl<T: Real> Medulla<T> {
+    pub(super) fn new(parameters: &ChiangDesc<T>, scattering: T) -> Self {
+        let number = T::from_f64;
+        let [_, tt, trt] = parameters.width_m;
+        let width = along(parameters.beta_m);
+        let [_, tt_about, trt_about] = parameters.width_n;
+        let scale = about(parameters.beta_n);
+        Self {
+            depth: -(-(scattering * scattering).min(number(0.99))).ln_1p(),
+            along: [tt / number(0.5), trt / number(2.0)].map(|by| inverse(along, by * width)),
+            about: [tt_about, trt_about].map(|by| inverse(about, by * scale)),
+        }
+    }
+
+    /// Computes the variances and the scales of TT and TRT for a direction with this cosine of its inclination.
+    pub(super) fn widths(&self, cos_theta_o: T) -> [[T; 2]; 2] {
+        let (number, one) = (T::from_f64, T::from_f64(1.0));
+        let grown = |roughness: T, passages: f64| {
+            let scattered = -(-number(passages) * self.depth / cos_theta_o).exp_m1();
+            (roughness + scattered).min(roughness.max(one))
+        };
+        let [tt, trt] = self.along;
+        let roots = [
+            number(0.5) * along(grown(tt, 1.0)),
+            number(2.0) * along(grown(trt, 2.0)),
+        ];
+        let [tt, trt] = self.about;
+        [
+            roots.map(|root| root * root),
+            [about(grown(tt, 1.0)), about(grown(trt, 2.0))],
+        ]
+    }
+}
+
+/// Computes the roughness of a width by bisection.
+fn inverse<T: Real>(of: impl Fn(T) -> T, width: T) -> T {
+    let half = T::from_f64(0.5);
+    let (mut least, mut most) = (T::default(), T::from_f64(2.0));
+    loop {
+        let middle = half * (least + most);
+        if middle <= least || middle >= most {
+            return middle;
+        }
+        if of(middle) < width {
+            least = middle;
+        } else {
+            most = middle;
+        }
     }
 }
