@@ -361,3 +361,15 @@ fn pigments_of_another_space_have_the_same_colours() -> Result<(), ParamError> {
     assert!(green.eumelanin[0] > 60.0 && green.eumelanin[1] == 0.0);
     Ok(())
 }
+
+#[test]
+fn a_width_factor_is_on_every_width() {
+    let desc = *HairParams::brown().desc();
+    let wide = desc.with_width_factor(2.0);
+    let widths = |d: HairDesc| [d.beta[0], d.beta[1], d.beta[2], d.gamma_tt, d.gamma_g];
+    assert_eq!(widths(wide), widths(desc).map(|width| 2.0 * width));
+    assert_eq!(
+        (wide.alpha, wide.phi_g, wide.i_g),
+        (desc.alpha, desc.phi_g, desc.i_g)
+    );
+}

@@ -93,3 +93,13 @@ fn values_with_equal_fields_are_equal() {
         Values::none(ChiangParams::FIELDS)
     );
 }
+
+/// Ranges of random numbers are those that their declarations say, in the unit of the declaration.
+#[test]
+fn random_tilts_are_in_degrees() {
+    let tilt = ChiangParams::FIELDS[2];
+    assert_eq!((tilt.name, tilt.unit), ("tilt", "rad"));
+    let draw = tilt.draw.unwrap();
+    assert_eq!([draw.least, draw.most], [-5.0, 5.0]);
+    assert!((draw.unit - 1.0_f32.to_radians()).abs() < 1e-9);
+}

@@ -339,3 +339,16 @@ fn derivatives_by_other_fields_pass_through() {
         (&[2.0][..], &[3.0, 4.0, 5.0][..])
     );
 }
+
+#[test]
+fn every_preset_of_a_model_has_one_with_a_diffuse_part() {
+    fn check<P: DiffusePresets>() {
+        let each = P::WITH_DIFFUSE.iter().zip(P::PRESETS);
+        for ((name, with), (own, fiber)) in each {
+            assert_eq!((name, with.desc().fiber), (own, *fiber));
+        }
+        assert_eq!(P::WITH_DIFFUSE.len(), P::PRESETS.len());
+    }
+    check::<HairParams>();
+    check::<ChiangParams>();
+}

@@ -1,0 +1,200 @@
+#!/usr/bin/env python3
+"""Share of small faults in the kernels and the variants that their tests find. By hand, for hours; needs cargo-mutants.
+
+    .ci/mutants.py run [GROUP...]   tests 300 mutants, of every group
+    .ci/mutants.py missed SUITE...  tests those that were missed again, by these: hairis, variants, printed, all
+    .ci/mutants.py table            counts by file, and what was missed
+
+cargo-mutants lists every mutant, and a seed draws 300 of them. A group has the mutants of one model, which are compiled for the portable
+lanes and this model alone, and tested by the tests of its package in their small size. The suites take longer: a package with all models
+for the portable lanes, and the test command of README.md. Answers are appended to target/mutants/record.csv as they come, so that a run that
+was stopped goes on. Groups and suites have clones of their own of the commit, so that two may run side by side.
+"""
+import collections
+import csv
+import json
+import os
+import pathlib
+import random
+import re
+import resource
+import signal
+import subprocess
+import sys
+import time
+
+COUNT, SEED = 300, "hairis"
+PACKAGES = ["-p", "hairis", "-p", "hairis-variants", "--features", "hairis-variants/any,hairis-variants/serde"]
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+WORK = ROOT / "target" / "mutants"
+RECORD = WORK / "record.csv"
+FLAGS = re.search(r"RUSTFLAGS='(.*)'", (ROOT / ".ci/flags").read_text())[1]
+# Draw thousands of samples of what one mutant in a thousand touches.
+SLOW = ["a_lobe_off_the_sphere_has_the_density_it_is_drawn_with", "weights_are_below_their_bound"]
+# Package with the tests of each group, the model that is compiled, and the tests' names.
+GROUPS = {
+    "kernels": ("hairis", "gaussian", ""),
+    "levels": ("hairis", "gaussian", ""),
+    "dual": ("hairis-variants", None, "dual_scattering"),
+    "variants": ("hairis-variants", None, ""),
+    "cauchy": ("hairis-variants", "cauchy", ""),
+    "chiang": ("hairis-variants", "chiang", ""),
+    "d_eon": ("hairis-variants", "d-eon", ""),
+    "kajiya_kay": ("hairis-variants", "kajiya-kay", ""),
+}
+PORTABLE = FLAGS + " --cfg=hairis_portable_alone"
+VARIANTS = ["--features", "hairis-variants/any,hairis-variants/serde"]
+# Arguments and compiler flags of each suite.
+SUITES = {
+    "hairis": (["-p", "hairis", "--all-features", "--test", "main"], PORTABLE),
+    "variants": (["-p", "hairis-variants", *VARIANTS, "--test", "main"], PORTABLE),
+    "printed": (["-p", "hairis-gradients", "-p", "hairis-shaders", "--test", "main"], PORTABLE),
+    "all": (re.search(r"^cargo test(.*)$", (ROOT / "README.md").read_text(), re.M)[1].split(), FLAGS),
+}
+
+
+def group_of(file):
+    if re.match(r"kernels/src/simd/(avx|dispatch)", file):
+        return "levels"
+    if file.startswith("kernels/src/dual_scattering"):
+        return "dual"
+    if file.startswith("kernels/"):
+        return "kernels"
+    stem = pathlib.Path(file).parts[2].removesuffix(".rs")
+    return {"hair": "cauchy"}.get(stem, stem if stem in GROUPS else "variants")
+
+
+def drawn():
+    listed = subprocess.run(["cargo", "mutants", "--list", "--json", *PACKAGES], cwd=ROOT, check=True, capture_output=True, text=True)
+    mutants = {mutant["name"]: mutant for mutant in json.loads(listed.stdout)}
+    return [mutants[name] for name in random.Random(SEED).sample(sorted(mutants), COUNT)], len(mutants)
+
+
+def record():
+    """The last row of each mutant, and the suites that missed it."""
+    rows, tried = {}, collections.defaultdict(set)
+    if RECORD.exists():
+        with RECORD.open() as file:
+            for name, *row in csv.reader(file):
+                rows[name] = row
+                tried[name].add(row[1])
+    return rows, tried
+
+
+def mutated(text, mutant):
+    """The text of a file with the mutant's span replaced."""
+    lines = text.splitlines(keepends=True)
+    start, end = mutant["span"]["start"], mutant["span"]["end"]
+    at = lambda place: sum(map(len, lines[: place["line"] - 1])) + place["column"] - 1
+    return text[: at(start)] + mutant["replacement"] + text[at(end) :]
+
+
+def runs(command, tree, env, limit):
+    """None beyond the limit of seconds, otherwise whether the command succeeds."""
+    limits = lambda: resource.setrlimit(resource.RLIMIT_AS, (16 << 30, 16 << 30))
+    with (tree.parent / "log").open("a") as log:
+        process = subprocess.Popen(
+            command, cwd=tree, env=env, stdout=log, stderr=log, start_new_session=True, preexec_fn=limits)
+        try:
+            return process.wait(limit) == 0
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+            return None
+
+
+def clone(name):
+    tree = WORK / name / "tree"
+    if not tree.exists():
+        subprocess.run(["git", "clone", "-q", "--shared", ROOT, tree], check=True)
+    subprocess.run(["git", "checkout", "-q", "--force", "--detach", commit()], cwd=tree, check=True)
+    return tree
+
+
+def commit():
+    return subprocess.run(["git", "rev-parse", "HEAD"], cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
+
+
+def answer(mutant, tree, build, test, env, limit):
+    """Outcome of a mutant: unviable, caught, timeout or missed."""
+    path = tree / mutant["file"]
+    text = path.read_text()
+    path.write_text(mutated(text, mutant))
+    try:
+        if not runs(build, tree, env, 900):
+            return "unviable"
+        return {True: "missed", False: "caught", None: "timeout"}[runs(test, tree, env, limit)]
+    finally:
+        path.write_text(text)
+
+
+def test(mutants, name, build, test, env, limit):
+    tree = clone(name)
+    env = os.environ | {"CARGO_TARGET_DIR": str(WORK / name / "target"), "CARGO_TERM_COLOR": "never", "CARGO_INCREMENTAL": "1"} | env
+    if not (runs(build, tree, env, 1800) and runs(test, tree, env, limit)):
+        sys.exit(f"{name}: the tests do not pass without mutants, see {WORK / name / 'log'}")
+    for mutant in mutants:
+        start = time.monotonic()
+        outcome = answer(mutant, tree, build, test, env, limit)
+        row = [mutant["name"], outcome, name, f"{time.monotonic() - start:.0f}"]
+        with RECORD.open("a") as file:
+            csv.writer(file, lineterminator="\n").writerow(row)
+        print(*row, flush=True)
+
+
+def run(names):
+    mutants, (known, _) = drawn()[0], record()
+    for name in names or GROUPS:
+        package, model, filter = GROUPS[name]
+        left = [m for m in mutants if group_of(m["file"]) == name and m["name"] not in known]
+        print(name, len(left), flush=True)
+        if not left:
+            continue
+        flags = FLAGS if name == "levels" else PORTABLE
+        flags += f' --cfg=hairis_one --cfg=hairis_one="{model}"' if model else ""
+        features = PACKAGES[4:] if package == "hairis-variants" else ["--all-features"]
+        command = ["cargo", "test", "-q", "--locked", "-p", package, *features, "--test", "main"]
+        skipped = [] if name == "levels" else [word for test in SLOW for word in ("--skip", test)]
+        arguments = ["--", *skipped, "-Zunstable-options", "--fail-fast", *([filter] if filter else [])]
+        test(left, name, [*command, "--no-run"], command + arguments, {"RUSTFLAGS": flags, "RUSTC_BOOTSTRAP": "1"}, 400)
+
+
+def missed(suites):
+    for suite in suites:
+        known, tried = record()
+        names = {name for name, row in known.items() if row[0] == "missed" and suite not in tried[name]}
+        left = [m for m in drawn()[0] if m["name"] in names]
+        print(suite, len(left), flush=True)
+        arguments, flags = SUITES[suite]
+        command = ["cargo", "test", "-q", "--locked", *arguments]
+        if left:
+            test(left, suite, [*command, "--no-run"], command, {"RUSTFLAGS": flags}, 1800)
+
+
+def table():
+    mutants, total = drawn()
+    known, _ = record()
+    files = collections.defaultdict(collections.Counter)
+    for mutant in mutants:
+        files[mutant["file"]][known.get(mutant["name"], ["untested"])[0]] += 1
+    outcomes = ["caught", "timeout", "missed", "unviable", "untested"]
+    print(f"{len(mutants)} of {total} mutants, at {commit()[:8]}")
+    rows = [[file, *(str(count[outcome]) for outcome in outcomes)] for file, count in sorted(files.items())]
+    rows.append(["all", *(str(sum(count[outcome] for count in files.values())) for outcome in outcomes)])
+    csv.writer(sys.stdout, lineterminator="\n").writerows([["file", *outcomes], *rows])
+    for mutant in mutants:
+        if known.get(mutant["name"], [""])[0] == "missed":
+            print(mutant["name"])
+
+
+if __name__ == "__main__":
+    WORK.mkdir(parents=True, exist_ok=True)
+    match sys.argv[1:]:
+        case ["run", *names] if set(names) <= set(GROUPS):
+            run(names)
+        case ["missed", *suites] if suites and set(suites) <= set(SUITES):
+            missed(suites)
+        case ["table"]:
+            table()
+        case _:
+            sys.exit(__doc__)
