@@ -6,7 +6,7 @@ use crate::json::{Json, join, number, numbers, refusal, word};
 use hairis::ParamError;
 use hairis_variants::chiang::Likeness;
 use hairis_variants::color::has_color;
-use hairis_variants::{Field, Kind, ModelId, Parameters, Values};
+use hairis_variants::{Field, Kind, ModelId, Values};
 use std::collections::BTreeMap;
 
 #[cfg(feature = "any")]
