@@ -7,32 +7,58 @@
 # Mitsuba's chi-square with it, models printed for Python in every framework, generated source of every model, and the hosts without an
 # operating system. The wheel needs the virtual environment that .ci/hosts.sh makes.
 #
-#   .ci/long.sh          one round
+#   .ci/long.sh          one round, and the rest
 #   .ci/long.sh ROUNDS   so many
+#   .ci/long.sh 0 PART.. these parts alone: v3 energy ignored listed library wheel frameworks shaders cortex_m
+#
+# What has passed is a line of target/long/COMMIT.csv, with its seconds on the clock and of processor time, and is left out when this
+# runs again: a run that was stopped goes on.
 #
 # HAIRIS_SEED=N HAIRIS_CASES=4 cargo test ... repeats a round. A round fails by chance less than once in 10,000 times (see False alarms in the
 # documentation of hairis-conformance): one that fails has found a bug.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . .ci/flags
+work=$(realpath -m "${CARGO_TARGET_DIR:-target}")/long
+log=$work/$(git rev-parse --short=8 HEAD).csv
+mkdir -p "$work"
+touch "$log"
 failed=0
-for round in $(seq "${1:-1}"); do
+# Processor time of what has ended, in hundredths of a second.
+ended() { awk '{ print $16 + $17 }' "/proc/$$/stat"; }
+# A part: its name, a word that is written beside it, and its command.
+part() { # part NAME WORD COMMAND...
+  local clock=$SECONDS processor result=passed
+  processor=$(ended)
+  grep -q "^$1,.*,passed," "$log" && return
+  "${@:3}" || { result=FAILED; failed=1; }
+  echo "$1,$2,$result,$((SECONDS - clock)),$((($(ended) - processor) / 100))" | tee -a "$log"
+}
+round() { # round SEED
+  HAIRIS_SEED=$1 HAIRIS_CASES=4 cargo test -q --locked -p hairis -p hairis-variants --all-features --test main --test samplers --test uphill \
+    --no-fail-fast -- --include-ignored
+}
+rounds=${1:-1}
+for round in $(seq "$rounds"); do
   seed=$(od -An -N8 -tu8 /dev/urandom | tr -d ' ')
-  echo "round $round: HAIRIS_SEED=$seed"
-  HAIRIS_SEED=$seed HAIRIS_CASES=4 cargo test -q --locked -p hairis -p hairis-variants --all-features --test main --test samplers --test uphill --no-fail-fast -- \
-    --include-ignored || { echo "FAIL seed $seed"; failed=1; }
+  part "round $round" "$seed" round "$seed"
 done
 export HAIRIS_CASES=1
-if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then
+v3() {
+  grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo || return 0
   # A target folder of its own, so that neither build discards the other's work.
-  CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-target}/v3 RUSTFLAGS="$RUSTFLAGS -Ctarget-cpu=x86-64-v3" cargo test -q -p hairis --all-features --lib --test main --test samplers || failed=1
-fi
+  CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-target}/v3 RUSTFLAGS="$RUSTFLAGS -Ctarget-cpu=x86-64-v3" cargo test -q -p hairis --all-features --lib --test main --test samplers
+}
 # Energy of 10,000 materials of each kind and bell: figures are printed.
-HAIRIS_MATERIALS=10000 cargo test -q --locked --release -p hairis --all-features --test main conserves_energy -- --nocapture || failed=1
-cargo test -q --locked -p hairis-harness -p hairis-study -- --ignored || failed=1
-cargo test -q --locked --release -p hairis-render --test main -- --ignored || failed=1
-cargo test -q --locked -p hairis-harness -p hairis-study -p hairis-render -p hairis-variants -p hairis-gradients --features hairis-variants/every-sampler \
-  || failed=1
+energy() {
+  HAIRIS_MATERIALS=10000 cargo test -q --locked --release -p hairis --all-features --test main conserves_energy -- --nocapture
+}
+ignored() {
+  cargo test -q --locked -p hairis-harness -p hairis-study -- --ignored && cargo test -q --locked --release -p hairis-render --test main -- --ignored
+}
+listed() {
+  cargo test -q --locked -p hairis-harness -p hairis-study -p hairis-render -p hairis-variants -p hairis-gradients --features hairis-variants/every-sampler
+}
 # The C library with every sampler: at most 5.75 MB, and the answers of Rust.
 library() {
   local work
@@ -50,8 +76,7 @@ library() {
   echo "libhairis.so: $size bytes"
   [ "$size" -le 5750000 ]
 }
-library || { echo "FAIL the C library"; failed=1; }
-# The wheel with every sampler: its tests, and Mitsuba's chi-square test of all sixteen entries of the list.
+# The wheel with every sampler: its tests, and Mitsuba's chi-square test of all seventeen entries of the list.
 wheel() {
   local work python llvm
   work=$(realpath -m "${CARGO_TARGET_DIR:-target}")/hosts
@@ -63,9 +88,8 @@ wheel() {
   llvm=$(ls /usr/lib/*/libLLVM.so.[0-9]* 2> /dev/null | sort -V | tail -1)
   DRJIT_LIBLLVM_PATH=$llvm "$python" -m pytest -q -p no:cacheprovider variants/python/tests &&
     (cd variants/capi/examples/mitsuba && DRJIT_LIBLLVM_PATH=$llvm "$python" chi2.py | tee "$work/chi2.log") &&
-    grep -q '128 of 128 pass' "$work/chi2.log"
+    grep -q '136 of 136 pass' "$work/chi2.log"
 }
-wheel || { echo "FAIL the wheel with every sampler"; failed=1; }
 # Models printed for Python in every framework, on 10,000 hits of 20 materials, for the wheel of .ci/hosts.sh, and the wheel's module for PyTorch.
 # PyTorch of PyPI brings CUDA, and takes 5 GB.
 frameworks() {
@@ -77,8 +101,13 @@ frameworks() {
     "$python" -m pytest -q -p no:cacheprovider variants/python/tests/test_frameworks.py -k torch &&
     DRJIT_LIBLLVM_PATH=$llvm "$python" .ci/frameworks.py "$program/hairis" numpy drjit torch jax
 }
-frameworks || { echo "FAIL models in frameworks of arrays"; failed=1; }
 # Generated source of every model.
-.ci/shaders.sh 4 || failed=1
-.ci/cortex_m.sh || failed=1
+shaders() { .ci/shaders.sh 4; }
+cortex_m() { .ci/cortex_m.sh; }
+all=(v3 energy ignored listed library wheel frameworks shaders cortex_m)
+for name in "${@:2}"; do
+  [[ " ${all[*]} " == *" $name "* ]] || { echo "PART must be one of ${all[*]}, got $name"; exit 2; }
+done
+parts=("${@:2}")
+for name in "${parts[@]:-${all[@]}}"; do part "$name" - "$name"; done
 exit $failed

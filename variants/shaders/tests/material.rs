@@ -123,7 +123,7 @@ fn check_closeness<M: Registered>() {
         distances::<M>(|random| random.material()),
         distances::<M>(legal),
     ];
-    // Constants of a model with a diffuse part are tested on the model alone.
+    // Constants of a model that has more are tested on the model alone.
     let own = |((place, _), _): &((String, f64), (String, f64))| !place.starts_with("fiber");
     for ((place, everyday), (_, legal)) in everyday.into_iter().zip(legal).filter(own) {
         if everyday > 0.0 || legal > 0.0 {
@@ -138,7 +138,10 @@ fn check_closeness<M: Registered>() {
     println!("{name}: value and density {effect:?}");
     // Variances of the lobes are among the constants of both fibres with absorption: what they are off by is multiplied by the exponent, which is at most the
     // logarithm of the largest number over the least.
-    let most = if matches!(M::NAME, "chiang" | "chiang-diffuse" | "d-eon") {
+    let most = if matches!(
+        M::NAME,
+        "chiang" | "chiang-diffuse" | "chiang-scattering" | "d-eon"
+    ) {
         MOST * f64::from(f32::EPSILON) * effect[3]
     } else {
         1e-6

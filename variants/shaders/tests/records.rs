@@ -3,6 +3,7 @@
 use crate::support::every_model;
 use hairis::{Gaussian, Published};
 use hairis_shaders::{Call, Function, Program, Target};
+use hairis_variants::chiang::ScatteringChiang;
 use hairis_variants::{Chiang, ModelId, Registered, Visitor, WithDiffuse};
 use std::fs;
 
@@ -46,6 +47,7 @@ fn operations_are_those_recorded() {
     if ModelId::find("chiang-diffuse", None).is_none() {
         text += &(&Rows).visit::<WithDiffuse<Published<Gaussian>>>();
         text += &(&Rows).visit::<WithDiffuse<Chiang>>();
+        text += &(&Rows).visit::<ScatteringChiang>();
     }
     if std::env::var("HAIRIS_RECORD").is_ok_and(|word| word == "write") {
         fs::write(RECORD, &text).expect("the folder is ours");

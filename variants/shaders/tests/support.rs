@@ -7,6 +7,7 @@ use hairis::simd::{Level, Vec3x, f32x8};
 use hairis::{Eval, Gaussian, Hit, Material, Material8, Published};
 use hairis_conformance::cases;
 use hairis_shaders::{Call, Function, Target, numbers, parameters};
+use hairis_variants::chiang::ScatteringChiang;
 use hairis_variants::{
     Chiang, Field, Kind, ModelId, Parameters, Registered, Values, Visitor, WithDiffuse,
 };
@@ -381,17 +382,18 @@ pub(crate) fn visit_every_model<V: Visitor + Copy>(visitor: V) {
     for id in ModelId::ALL {
         id.visit(visitor);
     }
-    visit_models_with_diffuse(visitor, true);
+    visit_rarer_models(visitor, true);
 }
 
-/// Runs a test on models with a diffuse part, which are on the longer list of `every-sampler` alone: on the near field if `both`.
-pub(crate) fn visit_models_with_diffuse<V: Visitor + Copy>(visitor: V, both: bool) {
+/// Runs a test on models that are on the longer list of `every-sampler` alone: hair with a diffuse part, and fibres too if `all`.
+pub(crate) fn visit_rarer_models<V: Visitor + Copy>(visitor: V, all: bool) {
     if ModelId::find("chiang-diffuse", None).is_some() {
         return;
     }
     visitor.visit::<WithDiffuse<Published<Gaussian>>>();
-    if both {
+    if all {
         visitor.visit::<WithDiffuse<Chiang>>();
+        visitor.visit::<ScatteringChiang>();
     }
 }
 
@@ -420,7 +422,7 @@ pub(crate) fn visit_code_of_models<V: Visitor + Copy>(visitor: V) {
     for id in ModelId::ALL.iter().filter(|id| is_long() || !is_twin(id)) {
         id.visit(visitor);
     }
-    visit_models_with_diffuse(visitor, is_long());
+    visit_rarer_models(visitor, is_long());
 }
 
 /// Runs a function that is generic over a model for each model of the list, or for those of another function.
