@@ -2,7 +2,7 @@
 
 use hairis::HairParams;
 use hairis::params::HairDesc;
-use hairis_variants::chiang::Shifts;
+use hairis_variants::chiang::{ScatteringParams, Shifts};
 use hairis_variants::{ChiangParams, KajiyaKayParams, Parameters, WithDiffuseParams};
 use serde_json::Value;
 
@@ -48,6 +48,18 @@ fn parameters_with_a_diffuse_part_come_back_from_json() {
             wrong[key] = value;
             serde_json::from_value::<WithDiffuseParams<ChiangParams>>(wrong).unwrap_err();
         }
+    }
+}
+
+#[test]
+fn a_fibre_with_scattering_comes_back_from_json() {
+    for (name, params) in ScatteringParams::PRESETS {
+        let json = serde_json::to_value(params).unwrap();
+        let back: ScatteringParams = serde_json::from_value(json.clone()).unwrap();
+        assert_eq!(back, *params, "{name}");
+        let mut wrong = json;
+        wrong["scattering"] = (-0.5).into();
+        serde_json::from_value::<ScatteringParams>(wrong).unwrap_err();
     }
 }
 

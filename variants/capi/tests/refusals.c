@@ -37,7 +37,7 @@ static void setup(void) {
   hairis_params *to = (hairis_params *)(void *)guarded, params, before;
   fill();
   refused(hairis_params_init(to, "hair", NULL, NULL, &error), HAIRIS_NAME, "model", -1,
-          hairis_model_count() > 7 ? "chiang, d-eon, gaussian-diffuse, cauchy-diffuse, chiang-diffuse, got \"hair\""
+          hairis_model_count() > 7 ? "gaussian-diffuse, cauchy-diffuse, chiang-diffuse, chiang-scattering, got \"hair\""
                                    : "model must be one of gaussian, cauchy, kajiya-kay, chiang, d-eon, got \"hair\"");
   refused(hairis_params_init(to, "\xff\xfe", NULL, NULL, &error), HAIRIS_NAME, "model", -1, "model must be one of");
   refused(hairis_params_init(to, "gaussian", "best", NULL, &error), HAIRIS_NAME, "sampler", -1, "sampler must be one of published, ");
