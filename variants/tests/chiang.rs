@@ -60,6 +60,39 @@ fn the_far_field_is_the_mean_over_h_and_conserves_energy() {
     }
 }
 
+/// Means over samples are integrals of the density, whichever node a sample is drawn from.
+#[test]
+fn samples_of_the_far_field_follow_its_density() {
+    let nodes = OffsetNodes::<4>::new();
+    let material = Material::new(&Chiang::MEAN, &params(rough(0.3, 0.3)));
+    let far = FarField::prepare(&material, &nodes, crate::support::direction(0.4, 0.0));
+    let tests = |phi: f64| [phi.sin(), phi.cos(), (2.0 * phi).sin(), (2.0 * phi).cos()];
+    // 240 inclinations and 240 azimuths.
+    let pi = core::f64::consts::PI;
+    let mut want = [0.0; 4];
+    for cell in 0..240 * 240 {
+        let theta = ((f64::from(cell / 240) + 0.5) / 240.0 - 0.5) * pi;
+        let phi = (f64::from(cell % 240) + 0.5) / 120.0 * pi;
+        let pdf = f64::from(far.eval_pdf(crate::support::direction(theta, phi)).pdf);
+        let weight = pdf * theta.cos() * (pi / 240.0) * (pi / 120.0);
+        for (sum, value) in want.iter_mut().zip(tests(phi)) {
+            *sum += weight * value;
+        }
+    }
+    let (mut draws, mut got, count) = (Draws(0xfa2), [0.0; 4], 40_000);
+    for _ in 0..count {
+        let wi = far.sample(draws.xi3()).unwrap().wi;
+        let phi = f64::from(wi.z).atan2(f64::from(wi.y));
+        for (sum, value) in got.iter_mut().zip(tests(phi)) {
+            *sum += value / f64::from(count);
+        }
+    }
+    // A term has a deviation of 1 at most: six standard errors.
+    for (got, want) in got.into_iter().zip(want) {
+        assert!((got - want).abs() < 0.03, "{got} for {want}");
+    }
+}
+
 #[test]
 fn the_far_field_takes_as_many_nodes_as_its_rule_says() {
     let reference = OffsetNodes::<16>::new();

@@ -87,7 +87,7 @@ impl Visitor for Check<'_> {
     type Output = Result<(), ParamError>;
 
     fn visit<M: Registered>(self) -> Self::Output {
-        M::Params::from_values(self.0).map(|_| ())
+        <M::Params as hairis_variants::Parameters>::from_values(self.0).map(|_| ())
     }
 }
 
