@@ -2,9 +2,9 @@
 """Share of small faults in the kernels and the variants that their tests find. By hand, for hours; needs cargo-mutants.
 
     .ci/mutants.py run [GROUP...]   tests 300 mutants, of every group
-    .ci/mutants.py missed SUITE...  tests those that were missed again, by these: hairis, variants, printed, all;
+    .ci/mutants.py missed SUITE...  tests those that were missed again, by these: hairis, levels, variants, printed, all;
                                     with MUTANTS=REGEX those whose name it matches
-    .ci/mutants.py table            counts by file, and what was missed
+    .ci/mutants.py write            writes benches/records/mutants.csv
 
 cargo-mutants lists every mutant, and a seed draws 300 of them. A group has the mutants of one model, which are compiled for the portable
 lanes and this model alone, and tested by the tests of its package in their small size. The suites take longer: a package with all models
@@ -49,6 +49,7 @@ VARIANTS = ["--features", "hairis-variants/any,hairis-variants/serde"]
 SUITES = {
     "hairis": (["-p", "hairis", "--all-features", "--test", "main"], SKIPPED, PORTABLE),
     "variants": (["-p", "hairis-variants", *VARIANTS, "--test", "main"], SKIPPED, PORTABLE),
+    "levels": (["-p", "hairis", "--all-features", "--test", "main"], [], FLAGS),
     "printed": (["-p", "hairis-gradients", "-p", "hairis-shaders", "--test", "main"], [], PORTABLE),
     "all": (re.search(r"^cargo test(.*)$", (ROOT / "README.md").read_text(), re.M)[1].split(), [], FLAGS),
 }
@@ -172,20 +173,21 @@ def missed(suites):
             test(left, suite, [*command, "--no-run"], command + skipped, {"RUSTFLAGS": flags}, 1800)
 
 
-def table():
+def write():
+    """Writes the record; why a mutant that was missed is equivalent stays as it stands there."""
     mutants, total = drawn()
     known, _ = record()
-    files = collections.defaultdict(collections.Counter)
-    for mutant in mutants:
-        files[mutant["file"]][known.get(mutant["name"], ["untested"])[0]] += 1
-    outcomes = ["caught", "timeout", "missed", "unviable", "untested"]
-    print(f"{len(mutants)} of {total} mutants, at {commit()[:8]}")
-    rows = [[file, *(str(count[outcome]) for outcome in outcomes)] for file, count in sorted(files.items())]
-    rows.append(["all", *(str(sum(count[outcome] for count in files.values())) for outcome in outcomes)])
-    csv.writer(sys.stdout, lineterminator="\n").writerows([["file", *outcomes], *rows])
-    for mutant in mutants:
-        if known.get(mutant["name"], [""])[0] == "missed":
-            print(mutant["name"])
+    path = ROOT / "benches/records/mutants.csv"
+    lines = path.read_text().splitlines() if path.exists() else []
+    why = {row["mutant"]: row["why"] for row in csv.DictReader(line for line in lines if not line.startswith("#"))}
+    with path.open("w") as file:
+        file.write(f"# {COUNT} of {total} mutants of cargo-mutants, by .ci/mutants.py\n")
+        file.write(f"# CPU: any CPU\n# commit: {commit()}\n# date: {time.strftime('%Y-%m-%d')}\n")
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["mutant", "outcome", "suite", "why"])
+        for name in sorted(mutant["name"] for mutant in mutants):
+            outcome, suite = known.get(name, ["untested", ""])[:2]
+            rows.writerow([name, outcome, suite, why.get(name, "") if outcome == "missed" else ""])
 
 
 if __name__ == "__main__":
@@ -195,7 +197,7 @@ if __name__ == "__main__":
             run(names)
         case ["missed", *suites] if suites and set(suites) <= set(SUITES):
             missed(suites)
-        case ["table"]:
-            table()
+        case ["write"]:
+            write()
         case _:
             sys.exit(__doc__)

@@ -260,6 +260,22 @@ def uphill():
     return record, ["figure", "model", "stated, at most", "random points", "searched"], rows
 
 
+def mutants():
+    """Small faults that tests found, by folder."""
+    record = Record("mutants.csv")
+    counts = {}
+    for row in record.rows:
+        folder = "/".join(row["mutant"].split(":")[0].split("/")[:3]).removesuffix(".rs")
+        outcome = "equivalent" if row["outcome"] == "missed" and row["why"] else row["outcome"]
+        for name in (folder, "all"):
+            counts.setdefault(name, {}).setdefault(outcome, 0)
+            counts[name][outcome] += 1
+    outcomes = ["caught", "timeout", "missed", "equivalent", "unviable"]
+    names = sorted(name for name in counts if name != "all") + ["all"]
+    body = [[f"`{name}`" if name != "all" else name, *(str(counts[name].get(outcome, 0)) for outcome in outcomes)] for name in names]
+    return record, ["", "found", "found, by its time", "missed", "equivalent", "does not compile"], body
+
+
 def rtxcr():
     """Albedo, V and largest weight of RTXCR's far field, and of ours."""
     record = Record("rtxcr.csv")
@@ -357,7 +373,7 @@ def physics_fibres():
     return record, ["fibre", "roughness", "tilt", "aspect", "absorption, RGB", "medulla: size, scattering, g"], body
 
 
-TABLES = {"capi": capi, "color": color, "color-heads": color_heads, "conserving": conserving, "cuda": cuda, "dual": dual, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "one-lane": one_lane, "physics": physics, "physics-fibres": physics_fibres, "physics-lobes": physics_lobes, "pictures": pictures, "refits": refits, "rtxcr": rtxcr, "speed": speed, "uphill": uphill}
+TABLES = {"capi": capi, "color": color, "color-heads": color_heads, "conserving": conserving, "cuda": cuda, "dual": dual, "exhaustive": exhaustive, "frameworks": frameworks, "gradients": gradients, "hand": hand, "hits": hits, "mutants": mutants, "one-lane": one_lane, "physics": physics, "physics-fibres": physics_fibres, "physics-lobes": physics_lobes, "pictures": pictures, "refits": refits, "rtxcr": rtxcr, "speed": speed, "uphill": uphill}
 MARKED = re.compile(r"(<!-- table (\S+): written by \.ci/tables\.py --write -->\n)(.*?)(<!-- end of table -->)", re.S)
 
 
