@@ -183,12 +183,10 @@ impl Likeness {
     pub fn entry(&self, values: &Values) -> Result<(ModelId, Values), ParamError> {
         let params = self.params(values)?;
         let ScatteringDesc { fiber, scattering } = params.desc();
-        if *scattering == 0.0 {
-            return Ok((ModelId::of::<Chiang>(), fiber.values()));
+        if cfg!(feature = "every-sampler") && *scattering != 0.0 {
+            return Ok((ModelId::of::<ScatteringChiang>(), params.values()));
         }
-        if cfg!(not(feature = "every-sampler")) {
-            Rule::Range([0.0, 0.0]).check(SCATTERING, &[*scattering])?;
-        }
-        Ok((ModelId::of::<ScatteringChiang>(), params.values()))
+        Rule::Range([0.0, 0.0]).check(SCATTERING, &[*scattering])?;
+        Ok((ModelId::of::<Chiang>(), fiber.values()))
     }
 }

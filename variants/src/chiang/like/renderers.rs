@@ -276,10 +276,6 @@ pub(super) fn mitsuba(values: &Values) -> Result<ChiangDesc, ParamError> {
     Ok(desc)
 }
 
-const fn lobe(name: &'static str, doc: &'static str) -> Field {
-    number(name, ROUGHNESS, doc).optional()
-}
-
 pub(super) const RTXCR: &[Field] = &[
     number(
         "longitudinalRoughness",
@@ -302,10 +298,10 @@ pub(super) const RTXCR: &[Field] = &[
         "Formula of the melanin.",
     )
     .optional(),
-    lobe("longitudinalRoughnessTT", "Longitudinal roughness of TT."),
-    lobe("longitudinalRoughnessTRT", "Longitudinal roughness of TRT."),
-    lobe("azimuthalRoughnessTT", "Azimuthal roughness of TT."),
-    lobe("azimuthalRoughnessTRT", "Azimuthal roughness of TRT."),
+    roughness("longitudinalRoughnessTT"),
+    roughness("longitudinalRoughnessTRT"),
+    azimuthal_roughness("azimuthalRoughnessTT"),
+    azimuthal_roughness("azimuthalRoughnessTRT"),
 ];
 
 /// The fibre of Chiang, and with one of the last four fields the "separate" one, in which a lobe has the width of its own roughness. Its far
