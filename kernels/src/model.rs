@@ -9,7 +9,6 @@ pub(crate) mod lobe;
 mod lobe_model;
 pub mod math;
 pub(crate) mod precision;
-mod sample_lanes;
 
 pub use crate::hair::{Bell, FourBells, GRAZING, MatchedBell, TwoBells};
 pub use crate::handle::{DynBsdf, DynBsdf8};
@@ -20,7 +19,6 @@ pub use lobe_model::LobeModel;
 #[doc(hidden)]
 pub use lobe_model::Mixed;
 pub use precision::{Precision, Single};
-pub use sample_lanes::SampleLanes;
 
 use crate::simd::{Broadcast, LaneStruct, Lanes, Path, Scalar, Schedule, Vec3x};
 use glam::{Vec3, Vec3A};
@@ -390,6 +388,36 @@ impl<L: Lanes> LobeEval<L> {
             value: self.value.store(),
             color: crate::simd::lanes::store3(self.color),
             pdf: self.pdf.store(),
+        }
+    }
+}
+
+/// Sampled direction, as models return it, per lane. A discarded lane has value, pdf and weight 0 and slot -1; users read [`Sample`]
+/// and [`Sample8`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleLanes<L> {
+    /// Direction towards the light, in the fibre's frame, unit.
+    pub wi: Vec3x<L>,
+    /// S at `wi`, without the cosine, linear RGB, per steradian.
+    pub value: [L; 3],
+    /// Density of `wi`, per steradian.
+    pub pdf: L,
+    /// Throughput weight `value * cos theta_i / pdf`.
+    pub weight: [L; 3],
+    /// Slot of the chosen lobe as a number; -1 if the sample was discarded.
+    pub slot: L,
+}
+
+impl<L: Lanes> SampleLanes<L> {
+    /// Returns the lanes in their storage form.
+    #[inline(always)]
+    pub(crate) fn store(self) -> SampleLanes<L::Stored> {
+        SampleLanes {
+            wi: self.wi.store(),
+            value: crate::simd::lanes::store3(self.value),
+            pdf: self.pdf.store(),
+            weight: crate::simd::lanes::store3(self.weight),
+            slot: self.slot.store(),
         }
     }
 }

@@ -78,6 +78,8 @@ impl<P, C> WithDiffusePrepared<P, C> {
     }
 }
 
+/// Density below which a sample is discarded, because close to denormals its weight would have no digits.
+const LEAST_DENSITY: f32 = 1e-30;
 /// Largest uniform number below 1.
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 /// Returns a shading point of the model with the diffuse part, which is chosen anew by their energies.
@@ -237,13 +239,28 @@ impl<M: Model> Model for WithDiffuse<M> {
     ) -> SampleLanes<L> {
         let (wi, slot) = Self::draw::<L, C>(prepared, xi);
         let wi = Direction::new(wi);
+        let Eval { value, pdf } = total::<M, L, C>(prepared, &wi);
+        L::stage("density and weight of the sample, 0 where it is discarded");
+        let least = L::splat(LEAST_DENSITY);
         // False for NaN.
         let numbers = (xi[0] + xi[1] + xi[2]).lt(L::splat(f32::INFINITY));
         let drawn = L::and(numbers, L::splat(-0.5).lt(slot));
-        let eval = total::<M, L, C>(prepared, &wi);
-        // A divisor, and so above 0.
-        let pdf = eval.pdf.max(L::splat(SampleLanes::<L>::LEAST_DENSITY));
-        SampleLanes::new(&wi, Eval { pdf, ..eval }, drawn, slot)
+        let sound = L::and(L::and(wi.is_sound(), least.lt(pdf)), drawn);
+        let limit = limit::<L>(sound);
+        let by = L::quotient(wi.cos_theta, pdf.max(least));
+        let [r, g, b] = value;
+        let Vec3x { x, y, z } = wi.vector;
+        SampleLanes {
+            wi: Vec3x::new(L::keep(sound, x), L::keep(sound, y), L::keep(sound, z)),
+            value: [r.min(limit), g.min(limit), b.min(limit)],
+            pdf: pdf.min(limit),
+            weight: [
+                (r * by).min(limit),
+                (g * by).min(limit),
+                (b * by).min(limit),
+            ],
+            slot: L::select_predictable(sound, slot, L::splat(-1.0)),
+        }
     }
 
     #[inline(always)]

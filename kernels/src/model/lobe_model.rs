@@ -184,7 +184,8 @@ crate::simd::lane_struct! {
 
 /// Largest number of lobes.
 const MOST: usize = 4;
-const LEAST_DENSITY: f32 = SampleLanes::<f32>::LEAST_DENSITY;
+/// Density below which a sample is discarded, because close to denormals its weight would have no digits.
+const LEAST_DENSITY: f32 = 1e-30;
 /// Largest uniform number below 1.
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
@@ -371,11 +372,23 @@ impl<M: LobeModel> Model for M {
         prepared: &Mixed<M::Prepared<C>, C>,
         xi: [L; 3],
     ) -> SampleLanes<L> {
+        let c = L::splat;
         let (wi, lobe, numbers) = drawn::<M, L, C>(prepared, xi);
         // A divisor, and so above 0.
-        let least = L::splat(LEAST_DENSITY);
-        let eval = total::<M, L, C>(prepared, &wi, least);
-        SampleLanes::new(&wi, eval, numbers, lobe.to_number())
+        let least = c(LEAST_DENSITY);
+        let Eval { value, pdf } = total::<M, L, C>(prepared, &wi, least);
+        L::stage("density and weight of the sample, 0 where it is discarded");
+        let sound = L::and(L::and(wi.is_sound(), least.lt(pdf)), numbers);
+        let limit = limit::<L>(sound);
+        let by = L::quotient(wi.cos_theta, pdf);
+        let Vec3x { x, y, z } = wi.vector;
+        SampleLanes {
+            wi: Vec3x::new(L::keep(sound, x), L::keep(sound, y), L::keep(sound, z)),
+            value: min3(value, limit),
+            pdf: pdf.min(limit),
+            weight: min3([value[0] * by, value[1] * by, value[2] * by], limit),
+            slot: L::select_predictable(sound, lobe.to_number(), c(-1.0)),
+        }
     }
 
     #[inline(always)]
