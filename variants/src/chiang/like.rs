@@ -150,21 +150,11 @@ impl Likeness {
     /// # Panics
     ///
     /// Panics if the values belong to other fields.
-    #[inline(never)]
+    #[inline]
     pub fn params(&self, values: &Values) -> Result<ScatteringParams, ParamError> {
-        for field in self.fields.iter().filter(|field| values.has(field.name)) {
-            if let Some(rule) = field.rule {
-                rule.check(field.name, values.numbers(field.name))?;
-            }
-        }
-        let scatters = self.fields.iter().any(|field| field.name == SCATTERING);
         ScatteringParams::new(&ScatteringDesc {
-            fiber: ChiangParams::new(&(self.convert)(values)?)?,
-            scattering: if scatters {
-                values.get::<1>(SCATTERING)[0]
-            } else {
-                0.0
-            },
+            fiber: self.fiber(values)?,
+            scattering: self.scattering(values),
         })
     }
 
@@ -181,12 +171,34 @@ impl Likeness {
     /// Panics if the values belong to other fields.
     #[inline(never)]
     pub fn entry(&self, values: &Values) -> Result<(ModelId, Values), ParamError> {
-        let params = self.params(values)?;
-        let ScatteringDesc { fiber, scattering } = params.desc();
-        if cfg!(feature = "every-sampler") && *scattering != 0.0 {
+        let scattering = self.scattering(values);
+        if cfg!(feature = "every-sampler") && scattering != 0.0 {
+            let params = self.params(values)?;
             return Ok((ModelId::of::<ScatteringChiang>(), params.values()));
         }
-        Rule::Range([0.0, 0.0]).check(SCATTERING, &[*scattering])?;
+        let fiber = self.fiber(values)?;
+        Rule::Range([0.0, 0.0]).check(SCATTERING, &[scattering])?;
         Ok((ModelId::of::<Chiang>(), fiber.values()))
+    }
+
+    /// Returns the fibre without its scattering.
+    #[inline(never)]
+    fn fiber(&self, values: &Values) -> Result<ChiangParams, ParamError> {
+        for field in self.fields.iter().filter(|field| values.has(field.name)) {
+            if let Some(rule) = field.rule {
+                rule.check(field.name, values.numbers(field.name))?;
+            }
+        }
+        ChiangParams::new(&(self.convert)(values)?)
+    }
+
+    /// Returns the scattering, which is 0 where the renderer has none.
+    fn scattering(&self, values: &Values) -> f32 {
+        let scatters = self.fields.iter().any(|field| field.name == SCATTERING);
+        if scatters {
+            values.get::<1>(SCATTERING)[0]
+        } else {
+            0.0
+        }
     }
 }

@@ -61,6 +61,18 @@ const PHEOMELANIN: Field = number(
 )
 .optional();
 
+/// Returns the value of a field of one number.
+#[inline(never)]
+fn number_of(values: &Values, name: &str) -> f32 {
+    values.get::<1>(name)[0]
+}
+
+/// Returns the value of a field of a colour.
+#[inline(never)]
+fn color_of(values: &Values, name: &str) -> [f32; 3] {
+    values.get(name)
+}
+
 pub(super) const CYCLES: &[Field] = &[
     roughness("roughness"),
     azimuthal_roughness("radial_roughness"),
@@ -87,7 +99,7 @@ pub(super) const CYCLES: &[Field] = &[
 /// The node with its parametrisation: `1 + 2 (random - 1/2) random_roughness` multiplies both roughnesses, and the same of
 /// `random_color` melanin. `coat` multiplies the roughness of R by `1 - coat`. The offset is the `alpha` of pbrt.
 pub(super) fn cycles(values: &Values) -> Result<ChiangDesc, ParamError> {
-    let one = |name: &str| values.get::<1>(name)[0];
+    let one = |name: &str| number_of(values, name);
     let clamp = |roughness: f32| roughness.clamp(1e-3, 1.0);
     let factor = varied(one("random"), one("random_roughness"));
     let beta_m = clamp(one("roughness") * factor);
@@ -102,17 +114,17 @@ pub(super) fn cycles(values: &Values) -> Result<ChiangDesc, ParamError> {
         ..ChiangDesc::default().with_pigments(Pigments::CYCLES)
     };
     if values.has("color") {
-        return desc.with_color(values.get("color"));
+        return desc.with_color(color_of(values, "color"));
     }
     if values.has("absorption_coefficient") {
         return Ok(ChiangDesc {
-            sigma_a: values.get("absorption_coefficient"),
+            sigma_a: color_of(values, "absorption_coefficient"),
             ..desc
         });
     }
     let [melanin, redness] = ["melanin", "melanin_redness"].map(one);
     desc.with_random_melanin(melanin, redness, one("random_color"), one("random"))?
-        .with_dye(values.get("tint"))
+        .with_dye(color_of(values, "tint"))
 }
 
 pub(super) const MATERIALX: &[Field] = &[
@@ -151,17 +163,17 @@ pub(super) const MATERIALX: &[Field] = &[
 
 /// The node with `chiang_hair_roughness` and one of the nodes for absorption.
 pub(super) fn materialx(values: &Values) -> Result<ChiangDesc, ParamError> {
-    let one = |name: &str| values.get::<1>(name)[0];
-    let colors = ["eumelanin_color", "pheomelanin_color"].map(|name| values.get(name));
+    let one = |name: &str| number_of(values, name);
+    let colors = ["eumelanin_color", "pheomelanin_color"].map(|name| color_of(values, name));
     let desc = ChiangDesc {
         beta_m: one("longitudinal"),
         beta_n: one("azimuthal"),
         eta: one("ior"),
-        tint_r: values.get("tint_R"),
-        tint_tt: values.get("tint_TT"),
-        tint_trt: values.get("tint_TRT"),
+        tint_r: color_of(values, "tint_R"),
+        tint_tt: color_of(values, "tint_TT"),
+        tint_trt: color_of(values, "tint_TRT"),
         width_m: [1.0, one("scale_TT"), one("scale_TRT")],
-        sigma_a: values.get("absorption_coefficient"),
+        sigma_a: color_of(values, "absorption_coefficient"),
         ..ChiangDesc::default().with_cuticle_angle(one("cuticle_angle"))?
     };
     if values.has("melanin") {
@@ -170,7 +182,7 @@ pub(super) fn materialx(values: &Values) -> Result<ChiangDesc, ParamError> {
         return desc.with_melanin_amount(concentration, redness);
     }
     if values.has("color") {
-        return desc.with_color(values.get("color"));
+        return desc.with_color(color_of(values, "color"));
     }
     Ok(desc)
 }
@@ -203,17 +215,17 @@ pub(super) const OSL: &[Field] = &[
 
 /// The closure, whose `scattering` is that of [`ScatteringParams`]. Its tint of TRT leaves the rest as it is, whereas the rest here has the tint of TRT.
 pub(super) fn osl(values: &Values) -> Result<ChiangDesc, ParamError> {
-    let one = |name: &str| values.get::<1>(name)[0];
+    let one = |name: &str| number_of(values, name);
     let [tt, all] = ["troughness", "lroughness"].map(|name| root(f64::from(one(name))));
     Ok(ChiangDesc {
         beta_m: one("lroughness"),
         beta_n: one("aroughness"),
         tilt: -one("offset"),
         eta: one("IOR"),
-        sigma_a: values.get("absorption"),
-        tint_r: values.get("R_tint"),
-        tint_tt: values.get("TT_tint"),
-        tint_trt: values.get("TRT_tint"),
+        sigma_a: color_of(values, "absorption"),
+        tint_r: color_of(values, "R_tint"),
+        tint_tt: color_of(values, "TT_tint"),
+        tint_trt: color_of(values, "TRT_tint"),
         width_m: [1.0, (0.5 * tt / all).rounded(), 2.0],
         ..ChiangDesc::default()
     })
@@ -231,20 +243,20 @@ pub(super) const PBRT: &[Field] = &[
 ];
 
 pub(super) fn pbrt(values: &Values) -> Result<ChiangDesc, ParamError> {
-    let one = |name: &str| values.get::<1>(name)[0];
+    let one = |name: &str| number_of(values, name);
     let desc = ChiangDesc {
         beta_m: one("beta_m"),
         beta_n: one("beta_n"),
         tilt: -one("alpha") * (PI / 180.0),
         eta: one("eta"),
-        sigma_a: values.get("sigma_a"),
+        sigma_a: color_of(values, "sigma_a"),
         ..ChiangDesc::default()
     };
     if values.has("eumelanin") {
         return desc.with_melanin(one("eumelanin"), one("pheomelanin"));
     }
     if values.has("reflectance") {
-        return desc.with_color(values.get("reflectance"));
+        return desc.with_color(color_of(values, "reflectance"));
     }
     Ok(desc)
 }
@@ -261,13 +273,13 @@ pub(super) const MITSUBA: &[Field] = &[
 ];
 
 pub(super) fn mitsuba(values: &Values) -> Result<ChiangDesc, ParamError> {
-    let one = |name: &str| values.get::<1>(name)[0];
+    let one = |name: &str| number_of(values, name);
     let desc = ChiangDesc {
         beta_m: one("longitudinal_roughness"),
         beta_n: one("azimuthal_roughness"),
         tilt: -one("scale_tilt") * (PI / 180.0),
         eta: one("int_ior") / one("ext_ior"),
-        sigma_a: values.get("sigma_a"),
+        sigma_a: color_of(values, "sigma_a"),
         ..ChiangDesc::default()
     };
     if values.has("eumelanin") {
@@ -307,7 +319,7 @@ pub(super) const RTXCR: &[Field] = &[
 /// The fibre of Chiang, and with one of the last four fields the "separate" one, in which a lobe has the width of its own roughness. Its far
 /// field is d'Eon's.
 pub(super) fn rtxcr(values: &Values) -> Result<ChiangDesc, ParamError> {
-    let one = |name: &str| values.get::<1>(name)[0];
+    let one = |name: &str| number_of(values, name);
     let desc = ChiangDesc {
         beta_m: one("longitudinalRoughness"),
         beta_n: one("azimuthalRoughness"),
@@ -338,7 +350,7 @@ pub(super) fn rtxcr(values: &Values) -> Result<ChiangDesc, ParamError> {
         ..desc
     };
     if !values.has("melanin") {
-        return desc.with_color(values.get("baseColor"));
+        return desc.with_color(color_of(values, "baseColor"));
     }
     let [melanin, redness] = ["melanin", "melaninRedness"].map(one);
     if values.word("absorptionModel") == "physics" {
