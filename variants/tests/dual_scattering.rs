@@ -273,7 +273,7 @@ fn shaded(
     };
     let ((theta_o, phi_o), (theta_i, phi_i)) = (angles(wo), angles(wi));
     let (theta_d, phi) = (0.5 * (theta_i - theta_o), (phi_i - phi_o).cos().acos());
-    let averages = dual.averages(theta_d as f32);
+    let averages = dual.averages(crate::support::narrow(theta_d));
     let local = averages.local();
     let number = |channels: [f32; 3]| f64::from(channels[c]);
     let inclined = |mean: f64, variance: f64| {

@@ -166,6 +166,13 @@ const TERMS: [[f32; 2]; 3] = {
     ]
 };
 
+/// Scale of the azimuthal logistic over its width.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rounding to a float is the purpose"
+)]
+const BY: f32 = ABOUT_BY as f32;
+
 /// Longitudinal widths of TT and TRT, in widths of a roughness, at which a lobe has that roughness: those of [`ChiangDesc::default`].
 const TT: f32 = 0.5;
 const TRT: f32 = 2.0;
@@ -224,8 +231,7 @@ fn widths<L: Lanes, C: Broadcast<L>>(
     let [a, b, c] = TERMS;
     let sum = each(c[0], c[1]).mul_add(steep, each(b[0], b[1]));
     let sum = x.mul_add(sum, each(a[0], a[1]));
-    let about = ABOUT_BY as f32;
-    let Pair(root, s) = x * sum * Pair(two(TT, TRT), two(about, about));
+    let Pair(root, s) = x * sum * Pair(two(TT, TRT), two(BY, BY));
     let v = root * root;
 
     L::stage("scattering: normalisation of the lobes");
