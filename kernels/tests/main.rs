@@ -12,6 +12,7 @@ mod default_level;
 mod family;
 mod frames;
 mod hair;
+mod handles;
 #[cfg(not(hairis_one))]
 mod hits;
 mod math;

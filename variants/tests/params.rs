@@ -262,6 +262,10 @@ fn derived_quantities_have_the_stated_figures() {
         desc.shifts_rad(),
         "both rules agree at an index of 1.5"
     );
+    let tilts = ChiangDesc { eta: 2.0, ..small }
+        .shifts_rad()
+        .map(|shift| shift / desc.tilt);
+    assert_eq!(tilts, [-2.0, 2.0, 6.0, 0.0], "2 p eta - 2");
     let exponents = [
         (1.0, 60.0),
         (10.0, 21.0),
