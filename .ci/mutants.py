@@ -103,9 +103,12 @@ def runs(command, tree, env, limit):
         try:
             return process.wait(limit) == 0
         except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
             return None
+        finally:
+            # What is left where a test hangs, or where this program is stopped.
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
 
 
 def clone(name):
@@ -194,6 +197,7 @@ def write():
 
 if __name__ == "__main__":
     WORK.mkdir(parents=True, exist_ok=True)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped"))
     match sys.argv[1:]:
         case ["run", *names] if set(names) <= set(GROUPS):
             run(names)
