@@ -25,7 +25,8 @@ import sys
 import time
 
 COUNT, SEED = 300, "hairis"
-PACKAGES = ["-p", "hairis", "-p", "hairis-variants", "--features", "hairis-variants/any,hairis-variants/serde"]
+VARIANTS = ["--features", "hairis-variants/any,hairis-variants/serde"]
+PACKAGES = ["-p", "hairis", "-p", "hairis-variants", *VARIANTS]
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 WORK = ROOT / "target" / "mutants"
 RECORD = WORK / "record.csv"
@@ -45,7 +46,6 @@ GROUPS = {
     "kajiya_kay": ("hairis-variants", "kajiya-kay", ""),
 }
 PORTABLE = FLAGS + " --cfg=hairis_portable_alone"
-VARIANTS = ["--features", "hairis-variants/any,hairis-variants/serde"]
 # Packages and features of each suite, what it skips, and its compiler flags.
 SUITES = {
     "hairis": (["-p", "hairis", "--all-features", "--test", "main"], SKIPPED, PORTABLE),
@@ -160,7 +160,7 @@ def run(names):
             continue
         flags = FLAGS if name == "levels" else PORTABLE
         flags += f' --cfg=hairis_one --cfg=hairis_one="{model}"' if model else ""
-        features = PACKAGES[4:] if package == "hairis-variants" else ["--all-features"]
+        features = VARIANTS if package == "hairis-variants" else ["--all-features"]
         command = ["cargo", "test", "-q", "--locked", "-p", package, *features, "--test", "main"]
         arguments = [*(["--"] if name == "levels" else SKIPPED), "-Zunstable-options", "--fail-fast", *([filter] if filter else [])]
         test(left, name, [*command, "--no-run"], command + arguments, {"RUSTFLAGS": flags, "RUSTC_BOOTSTRAP": "1"}, 400)
