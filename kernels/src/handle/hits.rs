@@ -196,7 +196,7 @@ impl<M: Model> Material<M> {
         mut outputs: [&mut [f32]; N],
     ) {
         clean_upper_halves();
-        if self.is_integrating() {
+        if const { M::INTEGRATES } && self.is_integrating() {
             return in_packets::<M, K, I, N>(inputs, &mut outputs, &|hits| self.prepare8(hits));
         }
         let row = AtHits::<M, K>::new(&self.constants);
@@ -343,7 +343,7 @@ impl<M: Model> MaterialTable<'_, M> {
             }
             let material = Material8::pack(lanes).with_level(level);
             let mut outputs = outputs;
-            if material.integrating().is_some() {
+            if const { M::INTEGRATES } && material.integrating().is_some() {
                 in_packets::<M, K, I, N>(inputs, &mut outputs, &|hits| material.prepare8(hits));
             } else {
                 let input = inputs.map(packet);

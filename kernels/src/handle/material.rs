@@ -56,7 +56,7 @@ impl<M: Model> Material<M> {
     #[must_use]
     pub fn prepare(&self, hit: impl Into<Hit>) -> Bsdf<M> {
         let hit = hit.into();
-        if self.is_integrating() {
+        if const { M::INTEGRATES } && self.is_integrating() {
             return self.prepare_integrated(hit);
         }
         Bsdf {
@@ -79,7 +79,7 @@ impl<M: Model> Material<M> {
     #[must_use]
     pub fn eval_hit(&self, hit: impl Into<Hit>, wi: impl Into<Vec3x<f32>>) -> Eval {
         let (hit, wi) = (hit.into(), wi.into());
-        if self.is_integrating() {
+        if const { M::INTEGRATES } && self.is_integrating() {
             return self.prepare_integrated(hit).eval_pdf(wi);
         }
         let prepared = M::prepare_one(&self.constants, hit.alone());
@@ -91,7 +91,7 @@ impl<M: Model> Material<M> {
     #[must_use]
     pub fn sample_hit(&self, hit: impl Into<Hit>, xi: [f32; 3]) -> Option<Sample> {
         let hit = hit.into();
-        if self.is_integrating() {
+        if const { M::INTEGRATES } && self.is_integrating() {
             return self.prepare_integrated(hit).sample(xi);
         }
         let prepared = M::prepare_one(&self.constants, hit.alone());
@@ -130,7 +130,7 @@ impl<M: Model> Material<M> {
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
-        if self.is_integrating() {
+        if const { M::INTEGRATES } && self.is_integrating() {
             return self.prepare8_at(hits).conserving();
         }
         self.prepare8_at(hits)
@@ -243,12 +243,12 @@ impl<M: Model> Material8<M> {
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
-        if M::INTEGRATES {
+        if const { M::INTEGRATES } {
             // What follows compares floats outside the level.
             clean_upper_halves();
-        }
-        if let Some(lanes) = self.integrating() {
-            return self.prepare8_at(hits).conserving_where(lanes);
+            if let Some(lanes) = self.integrating() {
+                return self.prepare8_at(hits).conserving_where(lanes);
+            }
         }
         self.prepare8_at(hits)
     }
