@@ -22,7 +22,7 @@ use hairis::columns::{EvalColumns, SampleColumns};
 use hairis::simd::{Level, f32x8};
 use hairis::{Material, ParamError, Vec3x8};
 use hairis_reference::{Formulas, Reference, Visitor, reference, visit};
-use hairis_variants::{AnyMaterial, ModelId, Parameters};
+use hairis_variants::{AnyBsdf, AnyMaterial, ModelId, Parameters};
 use serde::Serialize;
 
 /// Operation that `hairis compare` times.
@@ -198,12 +198,15 @@ fn truth<M: Formulas>(
         .collect()
 }
 
+/// Passes over the formulas in `f32`, with the libm crate and with std.
+type Formulae = [Box<dyn Pass>; 2];
+
 /// List of contenders that is being built.
 struct Contenders(Vec<Contender>);
 
 impl Contenders {
     /// Begins the list with the formulas in `f32`, with the libm crate and with std, and with the kernel on one lane.
-    fn new(libm: Box<dyn Pass>, std: Box<dyn Pass>, one: Box<dyn Pass>) -> Self {
+    fn new([libm, std]: Formulae, one: Box<dyn Pass>) -> Self {
         let [libm, std] =
             [("scalar, libm crate", libm), ("scalar, std", std)].map(|(level, task)| Contender {
                 name: REFERENCE,
@@ -275,12 +278,14 @@ fn prepare<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
     } = Implementations::new(params);
     let wo = arrays(&inputs.wo);
     let contenders = Contenders::new(
-        task(&wo, move |wo| {
-            Point::<_, f32>(M::point(&libm, *wo, 0.0), PhantomData)
-        }),
-        task(&wo, move |wo| {
-            Point(M::point(&std, platform(*wo), Platform(0.0)), PhantomData)
-        }),
+        [
+            task(&wo, move |wo| {
+                Point::<_, f32>(M::point(&libm, *wo, 0.0), PhantomData)
+            }),
+            task(&wo, move |wo| {
+                Point(M::point(&std, platform(*wo), Platform(0.0)), PhantomData)
+            }),
+        ],
         task(&inputs.wo, move |wo| material.prepare(*wo)),
     )
     .levels(EIGHT, |level| {
@@ -300,9 +305,22 @@ fn eval_pdf<M: Formulas>(
 ) -> Entrants {
     let (wo, wi) = (inputs.wo[0], arrays(&inputs.wi));
     let (libm, std) = Implementations::<M>::new(params).references(wo);
+    let formulas = [
+        task(&wi, move |wi| libm.eval_pdf(*wi)),
+        task(&wi, move |wi| std.eval_pdf(platform(*wi))),
+    ];
     let bsdf = chosen::<M>(params)?.prepare(wo);
+    Ok((
+        evaluated(formulas, bsdf, &inputs.wi, every_way),
+        Truth::of_directions(truth::<M>(params, &[wo])?, &inputs.wi),
+    ))
+}
+
+/// Returns the contenders that evaluate a handle, after the formulas.
+fn evaluated(formulas: Formulae, bsdf: AnyBsdf, wi: &[Vec3], every_way: bool) -> Contenders {
+    let rows = arrays(wi);
     let slices = |len| {
-        let wi = &wi;
+        let rows = &rows;
         move |level| -> Box<dyn Pass> {
             let bsdf = bsdf.with_level(level);
             let call = move |wi: [&[f32]; 3], [r, g, b, pdf]: [&mut [f32]; 4]| {
@@ -314,31 +332,24 @@ fn eval_pdf<M: Formulas>(
                     },
                 )
             };
-            Box::new(Slices::new(len, wi, call))
+            Box::new(Slices::new(len, rows, call))
         }
     };
-    let mut contenders = Contenders::new(
-        task(&wi, move |wi| libm.eval_pdf(*wi)),
-        task(&wi, move |wi| std.eval_pdf(platform(*wi))),
-        task(&inputs.wi, move |wi| bsdf.eval_pdf(*wi)),
-    )
-    .levels(EIGHT, |level| {
-        let bsdf = bsdf.with_level(level);
-        task(&packets(&inputs.wi), move |wi| bsdf.eval_pdf8(wi))
-    })
-    .levels(SLICES, slices(TIMED_DIRECTIONS));
-    if every_way {
-        let (eights, _) = inputs.wi.as_chunks::<8>();
-        let fresh = |level| {
+    let contenders = Contenders::new(formulas, task(wi, move |wi| bsdf.eval_pdf(*wi)))
+        .levels(EIGHT, |level| {
             let bsdf = bsdf.with_level(level);
-            task(eights, move |wi| bsdf.eval_pdf8(&Vec3x8::from(*wi)))
-        };
-        contenders = contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW));
+            task(&packets(wi), move |wi| bsdf.eval_pdf8(wi))
+        })
+        .levels(SLICES, slices(TIMED_DIRECTIONS));
+    if !every_way {
+        return contenders;
     }
-    Ok((
-        contenders,
-        Truth::of_directions(truth::<M>(params, &[wo])?, &inputs.wi),
-    ))
+    let (eights, _) = wi.as_chunks::<8>();
+    let fresh = |level| {
+        let bsdf = bsdf.with_level(level);
+        task(eights, move |wi| bsdf.eval_pdf8(&Vec3x8::from(*wi)))
+    };
+    contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW))
 }
 
 fn sample<M: Formulas>(
@@ -348,7 +359,19 @@ fn sample<M: Formulas>(
 ) -> Entrants {
     let (wo, xi) = (inputs.wo[0], &inputs.xi);
     let (libm, std) = Implementations::<M>::new(params).references(wo);
+    let formulas = [
+        task(xi, move |xi| libm.sample(*xi)),
+        task(xi, move |xi| std.sample(platform(*xi))),
+    ];
     let bsdf = chosen::<M>(params)?.prepare(wo);
+    Ok((
+        sampled(formulas, bsdf, xi, every_way),
+        Truth::of_samples(truth::<M>(params, &[wo])?, xi),
+    ))
+}
+
+/// Returns the contenders that sample a handle, after the formulas.
+fn sampled(formulas: Formulae, bsdf: AnyBsdf, xi: &[[f32; 3]], every_way: bool) -> Contenders {
     let slices = |len| {
         move |level| -> Box<dyn Pass> {
             let bsdf = bsdf.with_level(level);
@@ -367,29 +390,22 @@ fn sample<M: Formulas>(
             Box::new(Slices::new(len, xi, call))
         }
     };
-    let mut contenders = Contenders::new(
-        task(xi, move |xi| libm.sample(*xi)),
-        task(xi, move |xi| std.sample(platform(*xi))),
-        task(xi, move |xi| bsdf.sample(*xi)),
-    )
-    .levels(EIGHT, |level| {
-        let bsdf = bsdf.with_level(level);
-        task(&xi_packets(xi), move |xi| bsdf.sample8(xi))
-    })
-    .levels(SLICES, slices(TIMED_DIRECTIONS));
-    if every_way {
-        let (eights, _) = xi.as_chunks::<8>();
-        let packed = |xi: &[[f32; 3]; 8]| -> [f32x8; 3] {
-            core::array::from_fn(|k| f32x8::new(xi.map(|xi| xi[k])))
-        };
-        let fresh = |level| {
+    let contenders = Contenders::new(formulas, task(xi, move |xi| bsdf.sample(*xi)))
+        .levels(EIGHT, |level| {
             let bsdf = bsdf.with_level(level);
-            task(eights, move |xi| bsdf.sample8(&packed(xi)))
-        };
-        contenders = contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW));
+            task(&xi_packets(xi), move |xi| bsdf.sample8(xi))
+        })
+        .levels(SLICES, slices(TIMED_DIRECTIONS));
+    if !every_way {
+        return contenders;
     }
-    Ok((
-        contenders,
-        Truth::of_samples(truth::<M>(params, &[wo])?, xi),
-    ))
+    let (eights, _) = xi.as_chunks::<8>();
+    let packed = |xi: &[[f32; 3]; 8]| -> [f32x8; 3] {
+        core::array::from_fn(|k| f32x8::new(xi.map(|xi| xi[k])))
+    };
+    let fresh = |level| {
+        let bsdf = bsdf.with_level(level);
+        task(eights, move |xi| bsdf.sample8(&packed(xi)))
+    };
+    contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW))
 }

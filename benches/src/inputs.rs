@@ -61,11 +61,13 @@ pub fn arrays(v: &[Vec3]) -> Vec<[f32; 3]> {
 }
 
 /// Pairs the elements of two lists.
+#[inline(never)]
 pub(crate) fn pairs<A: Clone, B: Clone>(a: &[A], b: &[B]) -> Vec<(A, B)> {
     a.iter().cloned().zip(b.iter().cloned()).collect()
 }
 
 /// Joins the triples of two lists into rows of six numbers.
+#[inline(never)]
 pub(crate) fn joined(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 6]> {
     a.iter()
         .zip(b)
@@ -75,6 +77,7 @@ pub(crate) fn joined(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 6]> {
 
 /// Packs directions, eight per packet; a remainder of fewer than eight is dropped.
 #[must_use]
+#[inline(never)]
 pub fn packets(v: &[Vec3]) -> Vec<Vec3x8> {
     let (eights, _) = v.as_chunks::<8>();
     eights.iter().map(|eight| (*eight).into()).collect()
@@ -82,6 +85,7 @@ pub fn packets(v: &[Vec3]) -> Vec<Vec3x8> {
 
 /// Packs triples of numbers, eight per packet; a remainder of fewer than eight is dropped.
 #[must_use]
+#[inline(never)]
 pub fn xi_packets(xi: &[[f32; 3]]) -> Vec<[f32x8; 3]> {
     let (eights, _) = xi.as_chunks::<8>();
     eights

@@ -179,6 +179,12 @@ pub struct Slices<F, const N: usize, const I: usize = 3> {
     read: fn([f32; N]) -> Answer,
 }
 
+/// Makes columns, the first with number `first`, from rows.
+#[inline(never)]
+fn columns<const N: usize>(first: usize, rows: &[[f32; N]]) -> [Column; N] {
+    from_fn(|k| Column::new(first + k, rows.iter().map(|row| row[k])))
+}
+
 /// Returns the answer that a row of `N` columns holds.
 fn read<const N: usize>(row: [f32; N]) -> Answer {
     Answer {
@@ -199,8 +205,8 @@ where
     /// Makes a task that calls `call` on consecutive groups of `len` rows; a remainder of fewer rows is dropped.
     pub fn new(len: usize, rows: &[[f32; I]], call: F) -> Self {
         Self {
-            inputs: from_fn(|k| Column::new(k, rows.iter().map(|row| row[k]))),
-            outputs: from_fn(|k| Column::new(I + k, [])),
+            inputs: columns(0, rows),
+            outputs: columns(I, &[]),
             calls: rows.len() / len,
             len,
             call,
@@ -300,6 +306,7 @@ impl Output for Eval {
 }
 
 impl Output for Eval8 {
+    #[inline(never)]
     fn answers(&self, out: &mut Vec<Answer>) {
         for lane in 0..8 {
             self.lane(lane).answers(out);
@@ -319,6 +326,7 @@ impl<T: Single> Output for ReferenceSample<T> {
 }
 
 impl Output for Option<Sample> {
+    #[inline(never)]
     fn answers(&self, out: &mut Vec<Answer>) {
         out.push(match self {
             Some(sample) => Answer {
@@ -336,6 +344,7 @@ impl Output for Option<Sample> {
 }
 
 impl Output for Sample8 {
+    #[inline(never)]
     fn answers(&self, out: &mut Vec<Answer>) {
         for lane in 0..8 {
             self.lane(lane).answers(out);
@@ -356,12 +365,14 @@ impl<R: Reference<T>, T: Single> Output for Point<R, T> {
 }
 
 impl<M: Model> Output for Bsdf<M> {
+    #[inline(never)]
     fn answers(&self, out: &mut Vec<Answer>) {
         self.eval_pdf(PROBE).answers(out);
     }
 }
 
 impl<M: Model> Output for Bsdf8<M> {
+    #[inline(never)]
     fn answers(&self, out: &mut Vec<Answer>) {
         self.eval_pdf8(&Vec3x8::splat(PROBE)).answers(out);
     }

@@ -99,14 +99,16 @@ pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
     // A packet holds the same sample of eight points, whereas the directions are in the order of the points.
     let place = |i: usize| (i / (8 * N) * 8 + i % 8) * N + i / 8 % N;
     let mut contenders = Contenders::new(
-        several(pairs(&arrays(wo), rows), in_turn, move |(wo, xi), keep| {
-            let point = M::point(&libm, *wo, 0.0);
-            xi.iter().for_each(|xi| keep(&point.sample(*xi)));
-        }),
-        several(pairs(&arrays(wo), rows), in_turn, move |(wo, xi), keep| {
-            let point = M::point(&std, platform(*wo), Platform(0.0));
-            xi.iter().for_each(|xi| keep(&point.sample(platform(*xi))));
-        }),
+        [
+            several(pairs(&arrays(wo), rows), in_turn, move |(wo, xi), keep| {
+                let point = M::point(&libm, *wo, 0.0);
+                xi.iter().for_each(|xi| keep(&point.sample(*xi)));
+            }),
+            several(pairs(&arrays(wo), rows), in_turn, move |(wo, xi), keep| {
+                let point = M::point(&std, platform(*wo), Platform(0.0));
+                xi.iter().for_each(|xi| keep(&point.sample(platform(*xi))));
+            }),
+        ],
         several(pairs(wo, rows), in_turn, move |(wo, xi), keep| {
             let point = prepare(&material, *wo);
             xi.iter().for_each(|xi| keep(&sample(&point, *xi)));
@@ -230,12 +232,14 @@ pub(super) fn eval<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let eights = pairs(&packets(&inputs.wo), &packets(&inputs.wi));
     let rows = joined(&arrays(&inputs.wo), &arrays(&inputs.wi));
     let mut contenders = Contenders::new(
-        task(&both, move |(wo, wi)| {
-            M::point(&libm, *wo, 0.0).eval_pdf(*wi)
-        }),
-        task(&both, move |(wo, wi)| {
-            M::point(&std, platform(*wo), Platform(0.0)).eval_pdf(platform(*wi))
-        }),
+        [
+            task(&both, move |(wo, wi)| {
+                M::point(&libm, *wo, 0.0).eval_pdf(*wi)
+            }),
+            task(&both, move |(wo, wi)| {
+                M::point(&std, platform(*wo), Platform(0.0)).eval_pdf(platform(*wi))
+            }),
+        ],
         task(&pairs(&inputs.wo, &inputs.wi), move |(wo, wi)| {
             prepare(&material, *wo).eval_pdf(*wi)
         }),
@@ -280,16 +284,18 @@ pub(super) fn mixed<M: Formulas>(inputs: &TimedInputs<M::Params>, pack_each: boo
     let packed = Material8::pack(materials.each_ref());
     let rows = joined(&arrays(&inputs.wo), &inputs.xi);
     let mut contenders = Contenders::new(
-        task(
-            &pairs(&numbered_arrays, &inputs.xi),
-            move |((i, wo), xi)| M::point(&libm[*i], *wo, 0.0).sample(*xi),
-        ),
-        task(
-            &pairs(&numbered_arrays, &inputs.xi),
-            move |((i, wo), xi)| {
-                M::point(&std[*i], platform(*wo), Platform(0.0)).sample(platform(*xi))
-            },
-        ),
+        [
+            task(
+                &pairs(&numbered_arrays, &inputs.xi),
+                move |((i, wo), xi)| M::point(&libm[*i], *wo, 0.0).sample(*xi),
+            ),
+            task(
+                &pairs(&numbered_arrays, &inputs.xi),
+                move |((i, wo), xi)| {
+                    M::point(&std[*i], platform(*wo), Platform(0.0)).sample(platform(*xi))
+                },
+            ),
+        ],
         task(&pairs(&numbered, &inputs.xi), move |((i, wo), xi)| {
             sample(&prepare(&materials[*i], *wo), *xi)
         }),
