@@ -13,6 +13,9 @@
 mod accuracy;
 #[cfg(any(not(hairis_one), hairis_one = "cauchy"))]
 mod cauchy;
+#[cfg(any(not(hairis_one), hairis_one = "cauchy"))]
+mod cauchy_hair;
+mod cauchy_rows;
 #[cfg(any(not(hairis_one), hairis_one = "chiang"))]
 mod chiang;
 #[cfg(not(hairis_one))]
@@ -20,6 +23,10 @@ mod color;
 #[cfg(any(not(hairis_one), hairis_one = "d-eon"))]
 mod d_eon;
 #[cfg(not(hairis_one))]
+#[allow(
+    dead_code,
+    reason = "the samplers' tests have the subject of the suites"
+)]
 mod diffuse;
 #[cfg(not(hairis_one))]
 mod dual_scattering;
@@ -38,9 +45,6 @@ mod like;
 mod params;
 #[cfg(not(hairis_one))]
 mod registry;
-mod rows;
-#[cfg(any(not(hairis_one), hairis_one = "chiang"))]
-mod scattering;
 #[cfg(not(hairis_one))]
 mod values;
 #[cfg(not(hairis_one))]

@@ -1,21 +1,14 @@
-//! Models with a diffuse part under the suite that every model passes, and properties of the diffuse part alone.
+//! Properties of the diffuse part alone. Models with one pass the suite that every model passes in `samplers.rs`.
 
-use crate::diffuse::{Diffuse, formulas, with};
-use crate::family::PublishedHair;
-use crate::fiber::ChiangFibers;
+use crate::diffuse::{formulas, with};
 use crate::support::{Draws, direction};
 use hairis::model::Model;
 use hairis::{Conserving, Gaussian, HairParams, Hit, Lobe, LobeMask, Matched, Material, Published};
-use hairis_conformance::published::Family;
-use hairis_conformance::{AsConserving, conformance};
 use hairis_reference::{Formulas, Reference, integrate};
 use hairis_variants::{
     Chiang, ChiangParams, DiffusePresets, Parameters, Registered, WithDiffuse, WithDiffuseDesc,
     WithDiffuseParams,
 };
-
-conformance!(chiang, AsConserving(Diffuse(ChiangFibers::<false>)));
-conformance!(cauchy, AsConserving(Diffuse(Family::<PublishedHair>::new())), but hits);
 
 const COLOR: [f32; 3] = [0.6, 0.4, 0.3];
 
