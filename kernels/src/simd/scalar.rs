@@ -61,6 +61,29 @@ fn sqrt(x: f32) -> f32 {
     libm::sqrtf(x)
 }
 
+/// Applies an instruction of two operands to four numbers each.
+///
+/// It is no intrinsic: LLVM applies those to the numbers that are used, and to what else the register holds.
+#[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(miri)))]
+macro_rules! of_four {
+    ($sse:literal, $avx:literal, $first:expr, $second:expr) => {{
+        use core::arch::x86_64::{_mm_setr_ps, _mm_storeu_ps};
+        let ([a, b, c, d], [e, f, g, h]): ([f32; 4], [f32; 4]) = ($first, $second);
+        let mut results = [0.0; 4];
+        // SAFETY: the program is compiled for CPUs that have the instructions, and there is room for four results.
+        unsafe {
+            let mut packed = _mm_setr_ps(a, b, c, d);
+            let second = _mm_setr_ps(e, f, g, h);
+            #[cfg(not(target_feature = "avx"))]
+            core::arch::asm!($sse, inout(xmm_reg) packed, in(xmm_reg) second, options(pure, nomem, nostack, preserves_flags));
+            #[cfg(target_feature = "avx")]
+            core::arch::asm!($avx, inout(xmm_reg) packed, in(xmm_reg) second, options(pure, nomem, nostack, preserves_flags));
+            _mm_storeu_ps(results.as_mut_ptr(), packed);
+        }
+        results
+    }};
+}
+
 impl Lanes for f32 {
     type Mask = bool;
     type Index = usize;
@@ -99,6 +122,16 @@ impl Lanes for f32 {
     #[inline(always)]
     fn sqrt(self) -> Self {
         sqrt(self)
+    }
+    #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(miri)))]
+    #[inline(always)]
+    fn quotients(a: [Self; 4], b: [Self; 4]) -> [Self; 4] {
+        of_four!("divps {0}, {1}", "vdivps {0}, {0}, {1}", a, b)
+    }
+    #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(miri)))]
+    #[inline(always)]
+    fn roots(x: [Self; 4]) -> [Self; 4] {
+        of_four!("sqrtps {0}, {1}", "vsqrtps {0}, {1}", x, x)
     }
     #[inline(always)]
     fn abs(self) -> Self {

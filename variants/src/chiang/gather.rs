@@ -152,6 +152,13 @@ pub(crate) fn same<L: Lanes>(x: L) -> Four<L> {
     Pair(Pair(x, x), Pair(x, x))
 }
 
+/// Divides packets.
+#[inline(always)]
+pub(crate) fn quotient<L: Lanes>(over: Four<L>, under: Four<L>) -> Four<L> {
+    let [r, tt, trt, rest] = L::quotients(apart(over), apart(under));
+    Pair(Pair(r, tt), Pair(trt, rest))
+}
+
 /// Splits a packet into the number of each lobe.
 #[inline(always)]
 pub(crate) fn apart<L: Lanes>(Pair(Pair(a, b), Pair(c, d)): Four<L>) -> [L; 4] {
@@ -232,38 +239,30 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     let path_length = twice_eta * cos_gamma_t * inv_inside;
     let [f, passed] = fresnel(cos_hit, k, eta_sq, eta_sq_less_one);
     L::stage("attenuation of each lobe in each channel");
-    // Not `[r; 12]`, which compilers that optimise for size make by a loop.
-    let r = f.store();
-    let mut attenuation = [r, r, r, r, r, r, r, r, r, r, r, r];
-    let mut channel = 0;
-    while channel < 3 {
-        let (t, absorbed) = gaussian_and_complement(m.twice_sigma_a[channel].lanes() * path_length);
-        let tt = passed * passed * t;
-        let trt = tt * (f * t);
-        // Divided by the loss of a passage, `1 - F T`, which is the light that does not return to the inside.
-        let rest = L::quotient(trt * (f * t), f.mul_add(absorbed, passed).max(c(1e-30)));
-        // On one lane the products take fewer instructions than the branch below.
-        if is_one_lane::<L>() {
-            let [r_tint, tt_tint, trt_tint] =
-                [m.tint[channel], m.tint[3 + channel], m.tint[6 + channel]];
-            attenuation[channel] = (f * r_tint.lanes()).alone().store();
-            attenuation[3 + channel] = (tt * tt_tint.lanes()).store();
-            attenuation[6 + channel] = (trt * trt_tint.lanes()).alone().store();
-            attenuation[9 + channel] = (rest * trt_tint.lanes()).alone().store();
-        } else {
-            attenuation[3 + channel] = tt.store();
-            attenuation[6 + channel] = trt.store();
-            attenuation[9 + channel] = rest.store();
-        }
-        channel += 1;
-    }
+    // Red, green, blue, and on one lane blue once more, as compilers make vectors of four numbers alone.
+    let [red, green, blue] = lanes3(&m.twice_sigma_a);
+    let sigma = Pair(Pair(red, green), Pair(blue, blue.alone()));
+    let (t, absorbed) = gaussian_and_complement(sigma * same(path_length));
+    let tt = same(passed * passed) * t;
+    let again = same(f) * t;
+    let trt = tt * again;
+    // Divided by the loss of a passage, `1 - F T`, which is the light that does not return to the inside.
+    let lost = same(f).mul_add(absorbed, same(passed));
+    let rest = quotient(trt * again, lost.max(same(c(1e-30))));
+    let [
+        [tt_r, tt_g, tt_b, _],
+        [trt_r, trt_g, trt_b, _],
+        [r, g, b, _],
+    ] = [apart(tt), apart(trt), apart(rest)];
+    let mut attenuation = [f, f, f, tt_r, tt_g, tt_b, trt_r, trt_g, trt_b, r, g, b];
 
     L::stage("tint of each lobe");
-    if !is_one_lane::<L>() && C::any_below_0(&m.tinted) {
+    // On one lane the products take fewer instructions than the branch.
+    if is_one_lane::<L>() || C::any_below_0(&m.tinted) {
         let mut place = 0;
         while place < 12 {
             let tint: L = m.tint[if place < 9 { place } else { place - 3 }].lanes();
-            attenuation[place] = (tint * attenuation[place].lanes()).store();
+            attenuation[place] = tint * attenuation[place];
             place += 1;
         }
     }
@@ -294,13 +293,26 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         sin_cone: store4(apart(sin_cone)),
         cos_cone: store4(apart(cos_cone)),
         concentration: store4(apart(concentration)),
-        spread: store4(apart(Four::quotient(
-            same(one),
-            concentration.max(same(c(1e-8))).sqrt(),
-        ))),
+        spread: store4(L::quotients(
+            [one; 4],
+            L::roots(apart(concentration.max(same(c(1e-8))))),
+        )),
         azimuth_v: store4(apart(v * by)),
         azimuth_w: store4(apart(w * by)),
-        attenuation,
+        attenuation: [
+            attenuation[0].store(),
+            attenuation[1].store(),
+            attenuation[2].store(),
+            attenuation[3].store(),
+            attenuation[4].store(),
+            attenuation[5].store(),
+            attenuation[6].store(),
+            attenuation[7].store(),
+            attenuation[8].store(),
+            attenuation[9].store(),
+            attenuation[10].store(),
+            attenuation[11].store(),
+        ],
         fresnel: f.store(),
         path_length: path_length.store(),
         widths: m.widths.spread::<L>(),

@@ -1,7 +1,7 @@
 //! Densities of the four lobes at a direction, per steradian.
 
 use super::ChiangPrepared;
-use super::gather::{Four, apart, four, same};
+use super::gather::{Four, apart, four, quotient, same};
 use crate::cone::{SEAM, bessel};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 use hairis::model::Direction;
@@ -35,7 +35,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
     );
     let (wi_v, wi_w) = (same(wi.vector.y), same(wi.vector.z));
     let (cross, dot) = (v.mul_sub(wi_w, w * wi_v).abs(), v.mul_add(wi_v, w * wi_w));
-    let angle = atan_eighth_turn(Four::quotient(
+    let angle = atan_eighth_turn(quotient(
         cross.min(dot.abs()),
         same(cos_i) + cross.max(dot.abs()),
     ));
