@@ -15,6 +15,7 @@ mod hair;
 mod handles;
 #[cfg(not(hairis_one))]
 mod hits;
+mod lobe_model;
 mod math;
 mod params;
 mod random;

@@ -95,6 +95,71 @@ impl Row<3, 2> for Sums {
 }
 
 #[test]
+fn choices_of_one_lane_are_those_of_its_masks() {
+    let table = [1.0_f32, 2.0, 3.0, 4.0];
+    for index in 0..4_usize {
+        let masks: [bool; 3] = Choice::<f32>::masks(index);
+        assert_eq!(masks, [index >= 1, index >= 2, index >= 3]);
+        let three = [table[0], table[1], table[2], table[2]];
+        let half = [table[0], table[2]];
+        assert_eq!(index.choose(table), f32::look_up(&table, index));
+        assert_eq!(
+            index.choose_three([1.0, 2.0, 3.0]),
+            index.look_up_three(&three)
+        );
+        assert_eq!(index.choose_half(half), index.look_up_half(&half));
+    }
+}
+
+/// Divides four numbers, and takes their roots.
+struct Four;
+
+impl Kernel for Four {
+    type Output = [[f32x8; 4]; 2];
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Self::Output {
+        let c = L::splat;
+        let (a, b) = (
+            [c(1.0), c(2.0), c(3.0), c(0.7)],
+            [c(3.0), c(-7.0), c(0.1), c(1e-3)],
+        );
+        let [quotients, roots] = [L::four_quotients(a, b), L::four_roots(a)];
+        [
+            [
+                quotients[0].store(),
+                quotients[1].store(),
+                quotients[2].store(),
+                quotients[3].store(),
+            ],
+            [
+                roots[0].store(),
+                roots[1].store(),
+                roots[2].store(),
+                roots[3].store(),
+            ],
+        ]
+    }
+}
+
+#[test]
+fn four_numbers_have_the_quotients_and_roots_of_each() {
+    let (a, b) = ([1.0, 2.0, 3.0, 0.7_f32], [3.0, -7.0, 0.1, 1e-3]);
+    let [quotients, roots] = [f32::four_quotients(a, b), f32::four_roots(a)];
+    for place in 0..4 {
+        assert_eq!(quotients[place], a[place] / b[place]);
+        assert_eq!(roots[place], a[place].sqrt());
+    }
+    for level in Level::available() {
+        let [of_level, roots_of_level] = level.run(Four);
+        for place in 0..4 {
+            assert_eq!(of_level[place], f32x8::splat(quotients[place]), "{level}");
+            assert_eq!(roots_of_level[place], f32x8::splat(roots[place]), "{level}");
+        }
+    }
+}
+
+#[test]
 fn rows_of_any_length_are_computed_once_each_and_nothing_else_is_written() {
     let mut draws = Draws(5);
     let columns: [Vec<f32>; 3] = core::array::from_fn(|_| (0..100).map(|_| draws.xi()).collect());
