@@ -46,6 +46,8 @@ fn least(map: &Environment) -> EfficiencyConfig<'_> {
     EfficiencyConfig {
         budget: Budget {
             convergence_n: SMALL.convergence_n / 4,
+            quadrature_texels: 32,
+            reference_passes: 2,
             ..part(32)
         },
         ..small(map)

@@ -2,6 +2,7 @@
 
 use crate::support::{Hits, Random, call};
 use hairis::simd::Level;
+use hairis_conformance::cases;
 use hairis_gradients::AnyGradients;
 use hairis_shaders::{Call, Function, Program, Rounding, Target, numbers};
 use hairis_variants::{ModelId, Parameters, Registered, Visitor};
@@ -43,7 +44,8 @@ impl Visitor for Bits {
             let value = eval.only(&["value"]).expect("a field");
             let functions = [gradient(&eval), gradient(&value)];
             let mut random = Random(71);
-            for material in 0..6 {
+            // Every third has narrow lobes.
+            for material in 0..3 * cases(2) {
                 let values = random.values(self.0, material % 3 == 2);
                 let params = M::Params::from_values(&values).expect("legal values");
                 let material = numbers(&M::MODEL.material(&params));

@@ -2,6 +2,7 @@
 
 use crate::support::{Hits, Random, call, quantiles};
 use hairis::simd::Level;
+use hairis_conformance::cases;
 use hairis_gradients::AnyGradients;
 use hairis_shaders::{Call, Function, Program, Target, numbers, parameters};
 use hairis_variants::{Kind, ModelId, Parameters, Registered, Visitor};
@@ -79,7 +80,7 @@ impl Visitor for Precision {
         let mut random = Random(74);
         let mut by = [Vec::new(), Vec::new(), Vec::new()];
         let mut asked = 0;
-        for _ in 0..40 {
+        for _ in 0..cases(40) {
             let values = random.values(id, false);
             let params = M::Params::from_values(&values).expect("legal values");
             // Functions of parameters read the fields that the parameters keep.
