@@ -22,15 +22,16 @@ mkdir -p "$dir/files/tests"
 cargo build -q --release --locked --target-dir "$target" -p hairis-benches --bin entry
 cp "$target/release/entry" "$dir/files/tests/"
 cargo test -q --release --locked --target-dir "$target" -p hairis -p hairis-variants --all-features \
-  --test main --no-run --message-format=json > "$dir/built"
+  --test main --test samplers --no-run --message-format=json > "$dir/built"
 python3 - "$dir" <<'END'
 import json, re, shutil, sys
 tests = f"{sys.argv[1]}/files/tests"
 for line in open(f"{sys.argv[1]}/built"):
     built = json.loads(line)
     if built.get("executable"):
-        package = built["manifest_path"].split("/")[-2]
-        shutil.copy(built["executable"], f"{tests}/{package}-{built['target']['name']}")
+        name = f"{built['manifest_path'].split('/')[-2]}-{built['target']['name']}"
+        if name != "kernels-samplers":
+            shutil.copy(built["executable"], f"{tests}/{name}")
 # vsqrtps of 512-bit registers becomes vmovaps.
 code, roots = re.subn(rb"(\x62.\x7c\x48)\x51", lambda m: m[1] + b"\x28", open(f"{tests}/kernels-main", "rb").read(), flags=re.S)
 assert roots, "no square root of 512 bits in the kernels' tests"
@@ -44,7 +45,7 @@ cat > "$dir/files/tests/all" <<'END'
 cd "$(dirname "$0")"
 fail() { cat out; echo "FAIL: $*"; exit 1; }
 ./entry list > out && grep '/avx512$' out > entries || fail "the level found here is not AVX-512"
-for test in kernels-main variants-main; do
+for test in kernels-main variants-main variants-samplers; do
   echo "$test"
   HAIRIS_CASES=1 ./$test --test-threads 1 --include-ignored slices_equal_packets levels_agree parity::levels lambert_fiber:: > out 2>&1 || fail "$test"
   grep -v '^$' out
@@ -81,7 +82,7 @@ for deb in "$dir"/debs/*.deb; do dpkg -x "$deb" "$dir/packages"; done
 mkdir -p "$dir/files/bin" "$dir/files/proc" "$dir/disc/isolinux"
 busybox=$dir/packages/bin/busybox
 cp "$busybox" "$dir/files/bin/"
-ldd "$dir"/files/tests/{entry,*-main} | grep -oE '/[^ :]+\.so[^ :]*' | sort -u | xargs cp -L --parents -t "$dir/files"
+ldd "$dir"/files/tests/{entry,*-main,*-samplers} | grep -oE '/[^ :]+\.so[^ :]*' | sort -u | xargs cp -L --parents -t "$dir/files"
 cat > "$dir/files/init" <<'END'
 #!/bin/busybox sh
 /bin/busybox --install /bin

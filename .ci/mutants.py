@@ -49,7 +49,7 @@ PORTABLE = FLAGS + " --cfg=hairis_portable_alone"
 # Packages and features of each suite, what it skips, and its compiler flags.
 SUITES = {
     "hairis": (["-p", "hairis", "--all-features", "--test", "main"], SKIPPED, PORTABLE),
-    "variants": (["-p", "hairis-variants", *VARIANTS, "--test", "main"], SKIPPED, PORTABLE),
+    "variants": (["-p", "hairis-variants", *VARIANTS, "--test", "main", "--test", "samplers"], SKIPPED, PORTABLE),
     "levels": (["-p", "hairis", "--all-features", "--test", "main"], [], FLAGS),
     "printed": (["-p", "hairis-gradients", "-p", "hairis-shaders", "--test", "main"], [], PORTABLE),
     "all": (re.search(r"^cargo test(.*)$", (ROOT / "README.md").read_text(), re.M)[1].split(), [], FLAGS),

@@ -198,15 +198,15 @@ fn truth<M: Formulas>(
         .collect()
 }
 
-/// Passes over the formulas in `f32`, with the libm crate and with std.
-type Formulae = [Box<dyn Pass>; 2];
+/// Passes over the formulas, with the libm crate and with std.
+type Baselines = [Box<dyn Pass>; 2];
 
 /// List of contenders that is being built.
 struct Contenders(Vec<Contender>);
 
 impl Contenders {
     /// Begins the list with the formulas in `f32`, with the libm crate and with std, and with the kernel on one lane.
-    fn new([libm, std]: Formulae, one: Box<dyn Pass>) -> Self {
+    fn new([libm, std]: Baselines, one: Box<dyn Pass>) -> Self {
         let [libm, std] =
             [("scalar, libm crate", libm), ("scalar, std", std)].map(|(level, task)| Contender {
                 name: REFERENCE,
@@ -317,7 +317,7 @@ fn eval_pdf<M: Formulas>(
 }
 
 /// Returns the contenders that evaluate a handle, after the formulas.
-fn evaluated(formulas: Formulae, bsdf: AnyBsdf, wi: &[Vec3], every_way: bool) -> Contenders {
+fn evaluated(formulas: Baselines, bsdf: AnyBsdf, wi: &[Vec3], every_way: bool) -> Contenders {
     let rows = arrays(wi);
     let slices = |len| {
         let rows = &rows;
@@ -371,7 +371,7 @@ fn sample<M: Formulas>(
 }
 
 /// Returns the contenders that sample a handle, after the formulas.
-fn sampled(formulas: Formulae, bsdf: AnyBsdf, xi: &[[f32; 3]], every_way: bool) -> Contenders {
+fn sampled(formulas: Baselines, bsdf: AnyBsdf, xi: &[[f32; 3]], every_way: bool) -> Contenders {
     let slices = |len| {
         move |level| -> Box<dyn Pass> {
             let bsdf = bsdf.with_level(level);

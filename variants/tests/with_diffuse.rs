@@ -1,4 +1,4 @@
-//! Properties of the diffuse part alone. Models with one pass the suite that every model passes in `samplers.rs`.
+//! Properties of the diffuse part alone. The suite that every model passes is in `samplers.rs`.
 
 use crate::diffuse::{formulas, with};
 use crate::support::{Draws, direction};

@@ -84,12 +84,12 @@ pub trait Lanes:
     /// Computes the square root, correctly rounded.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// Computes the quotients of four pairs of numbers.
+    /// Divides four numbers of `a` by those of `b`.
     ///
     /// Provided: four times [`quotient`](Self::quotient). One lane of x86-64 has an instruction for all of them.
     #[inline(always)]
     #[must_use]
-    fn quotients(a: [Self; 4], b: [Self; 4]) -> [Self; 4] {
+    fn four_quotients(a: [Self; 4], b: [Self; 4]) -> [Self; 4] {
         [
             Self::quotient(a[0], b[0]),
             Self::quotient(a[1], b[1]),
@@ -97,10 +97,12 @@ pub trait Lanes:
             Self::quotient(a[3], b[3]),
         ]
     }
-    /// Computes the square roots of four numbers, as [`quotients`](Self::quotients) does quotients.
+    /// Computes the square roots of four numbers.
+    ///
+    /// Provided: four times [`sqrt`](Self::sqrt). One lane of x86-64 has an instruction for all of them.
     #[inline(always)]
     #[must_use]
-    fn roots(x: [Self; 4]) -> [Self; 4] {
+    fn four_roots(x: [Self; 4]) -> [Self; 4] {
         [x[0].sqrt(), x[1].sqrt(), x[2].sqrt(), x[3].sqrt()]
     }
     /// Returns the magnitude of each lane.

@@ -61,23 +61,22 @@ fn sqrt(x: f32) -> f32 {
     libm::sqrtf(x)
 }
 
-/// Applies an instruction of two operands to four numbers each.
+/// Applies an instruction to four numbers, and to four others if it has two operands.
 ///
-/// It is no intrinsic: LLVM applies those to the numbers that are used, and to what else the register holds.
+/// Inline assembly, because LLVM applies an intrinsic to the lanes in use, and to whatever the other lanes of the register hold.
 #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(miri)))]
 macro_rules! of_four {
-    ($sse:literal, $avx:literal, $first:expr, $second:expr) => {{
+    ($sse:literal, $avx:literal, $numbers:expr $(, $others:expr)?) => {{
         use core::arch::x86_64::{_mm_setr_ps, _mm_storeu_ps};
-        let ([a, b, c, d], [e, f, g, h]): ([f32; 4], [f32; 4]) = ($first, $second);
+        let [a, b, c, d] = $numbers;
         let mut results = [0.0; 4];
         // SAFETY: the program is compiled for CPUs that have the instructions, and there is room for four results.
         unsafe {
             let mut packed = _mm_setr_ps(a, b, c, d);
-            let second = _mm_setr_ps(e, f, g, h);
             #[cfg(not(target_feature = "avx"))]
-            core::arch::asm!($sse, inout(xmm_reg) packed, in(xmm_reg) second, options(pure, nomem, nostack, preserves_flags));
+            core::arch::asm!($sse, inout(xmm_reg) packed, $(in(xmm_reg) { let [a, b, c, d] = $others; _mm_setr_ps(a, b, c, d) },)? options(pure, nomem, nostack, preserves_flags));
             #[cfg(target_feature = "avx")]
-            core::arch::asm!($avx, inout(xmm_reg) packed, in(xmm_reg) second, options(pure, nomem, nostack, preserves_flags));
+            core::arch::asm!($avx, inout(xmm_reg) packed, $(in(xmm_reg) { let [a, b, c, d] = $others; _mm_setr_ps(a, b, c, d) },)? options(pure, nomem, nostack, preserves_flags));
             _mm_storeu_ps(results.as_mut_ptr(), packed);
         }
         results
@@ -125,13 +124,13 @@ impl Lanes for f32 {
     }
     #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(miri)))]
     #[inline(always)]
-    fn quotients(a: [Self; 4], b: [Self; 4]) -> [Self; 4] {
+    fn four_quotients(a: [Self; 4], b: [Self; 4]) -> [Self; 4] {
         of_four!("divps {0}, {1}", "vdivps {0}, {0}, {1}", a, b)
     }
     #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(miri)))]
     #[inline(always)]
-    fn roots(x: [Self; 4]) -> [Self; 4] {
-        of_four!("sqrtps {0}, {1}", "vsqrtps {0}, {1}", x, x)
+    fn four_roots(x: [Self; 4]) -> [Self; 4] {
+        of_four!("sqrtps {0}, {0}", "vsqrtps {0}, {0}", x)
     }
     #[inline(always)]
     fn abs(self) -> Self {

@@ -154,8 +154,8 @@ pub(crate) fn same<L: Lanes>(x: L) -> Four<L> {
 
 /// Divides packets.
 #[inline(always)]
-pub(crate) fn quotient<L: Lanes>(over: Four<L>, under: Four<L>) -> Four<L> {
-    let [r, tt, trt, rest] = L::quotients(apart(over), apart(under));
+pub(super) fn quotient<L: Lanes>(over: Four<L>, under: Four<L>) -> Four<L> {
+    let [r, tt, trt, rest] = L::four_quotients(apart(over), apart(under));
     Pair(Pair(r, tt), Pair(trt, rest))
 }
 
@@ -239,7 +239,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     let path_length = twice_eta * cos_gamma_t * inv_inside;
     let [f, passed] = fresnel(cos_hit, k, eta_sq, eta_sq_less_one);
     L::stage("attenuation of each lobe in each channel");
-    // Red, green, blue, and on one lane blue once more, as compilers make vectors of four numbers alone.
+    // Red, green, blue and a copy of blue: on one lane compilers make vectors of four numbers, and not of three.
     let [red, green, blue] = lanes3(&m.twice_sigma_a);
     let sigma = Pair(Pair(red, green), Pair(blue, blue.alone()));
     let (t, absorbed) = gaussian_and_complement(sigma * same(path_length));
@@ -293,9 +293,9 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         sin_cone: store4(apart(sin_cone)),
         cos_cone: store4(apart(cos_cone)),
         concentration: store4(apart(concentration)),
-        spread: store4(L::quotients(
+        spread: store4(L::four_quotients(
             [one; 4],
-            L::roots(apart(concentration.max(same(c(1e-8))))),
+            L::four_roots(apart(concentration.max(same(c(1e-8))))),
         )),
         azimuth_v: store4(apart(v * by)),
         azimuth_w: store4(apart(w * by)),
