@@ -3,7 +3,7 @@
 use core::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 use hairis::model::{Direction, LobeEval, LobeModel};
-use hairis::simd::{Broadcast, Choice, Lanes, Scalar, lane_struct, lanes3};
+use hairis::simd::{Broadcast, Lanes, Scalar, lane_struct, lanes3};
 use hairis::{Material, PerLobe};
 
 /// Fibre that is drawn evenly: `S cos theta_i = color (1 + u + v + u^2) / (4 pi)`.
