@@ -37,6 +37,17 @@ impl<T: Real> Cut<T> {
         }
     }
 
+    /// Returns the ends of the interval, in widths from the centre.
+    pub(crate) fn ends(&self) -> [T; 2] {
+        [self.lo, self.hi]
+    }
+
+    /// Integrates the bell from `x` to its centre, or to the end of the interval that is next to the centre.
+    pub(crate) fn centre_to(&self, x: T) -> T {
+        let origin = self.lo.max(T::default().min(self.hi));
+        (self.below(x) - self.below(origin)).abs()
+    }
+
     /// Integrates the bell from `lo` to `x`.
     pub(crate) fn below(&self, x: T) -> T {
         let (zero, one) = (T::default(), T::from_f64(1.0));

@@ -1,5 +1,7 @@
 //! Formulas of the matched sampler [`Matched`](hairis::Matched), line by line.
 
+mod errors;
+
 use super::cut::Cut;
 use super::shape::Shape;
 use super::{Angles, HairReference};
@@ -54,6 +56,12 @@ pub struct MatchedReference<T> {
     probabilities: PerLobe<T>,
 }
 
+/// Returns the mean intensity of each lobe.
+fn intensities<T: Real>(p: &HairDesc<T>) -> PerLobe<T> {
+    let [r, tt, trt] = [p.i_r, p.i_tt, p.i_trt].map(|[r, g, b]| (r + g + b) / T::from_f64(3.0));
+    PerLobe::padded([r, tt, trt, trt * p.i_g], T::default())
+}
+
 /// Returns W, `(cos theta_i / cos theta_d)^2`.
 fn w<T: Real>(theta_i: T, theta_o: T) -> T {
     let cos_theta_d = (T::from_f64(0.5) * (theta_o - theta_i)).cos();
@@ -95,9 +103,7 @@ impl<T: Real> MatchedReference<T> {
             heights[j] = heights[j].max(heights[j - 1]);
             heights[bands - 1 - j] = heights[bands - 1 - j].max(heights[bands - j]);
         }
-        let mean = |rgb: [T; 3]| (rgb[0] + rgb[1] + rgb[2]) / number(3.0);
-        let trt = mean(p.i_trt);
-        let intensity = PerLobe::padded([mean(p.i_r), mean(p.i_tt), trt, trt * p.i_g], zero);
+        let intensity = intensities(p);
         let azimuth = [
             number(4.0),
             number(2.0) * p.gamma_tt * transmission.area,
@@ -418,6 +424,10 @@ impl<T: Real> Reference<T> for MatchedReference<T> {
             most.max(w(mode.max(from).min(to), theta_o) / self.heights[j])
         });
         Some(largest * most)
+    }
+
+    fn lobe_errors(&self, wi: [T; 3]) -> Option<PerLobe<[T; 2]>> {
+        self.errors(wi)
     }
 
     /// Returns the ends of the bands, both poles included.
