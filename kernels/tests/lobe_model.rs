@@ -78,4 +78,10 @@ fn the_provided_albedo_is_a_mean_over_all_three_numbers() {
     // Measured: 3.6e-3, as the first number makes S jump.
     assert!((r - 1.0).abs() < 5e-3 && (g - 0.4).abs() < 2e-3, "{r} {g}");
     assert_eq!(b, 0.0);
+    let wi = Vec3::new(0.6, 0.0, 0.8);
+    let (all, lobes) = (hair.eval_pdf(wi), hair.lobes(wi).0);
+    assert_eq!(
+        [lobes[0].pdf, lobes[0].value * 0.3],
+        [all.pdf, all.value[1]]
+    );
 }

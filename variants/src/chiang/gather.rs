@@ -249,23 +249,14 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     // Divided by the loss of a passage, `1 - F T`, which is the light that does not return to the inside.
     let lost = same(f).mul_add(absorbed, same(passed));
     let rest = quotient(trt * again, lost.max(same(c(1e-30))));
-    let [
-        [tt_r, tt_g, tt_b, _],
-        [trt_r, trt_g, trt_b, _],
-        [r, g, b, _],
-    ] = [apart(tt), apart(trt), apart(rest)];
-    let mut attenuation = [f, f, f, tt_r, tt_g, tt_b, trt_r, trt_g, trt_b, r, g, b];
-
     L::stage("tint of each lobe");
     // On one lane the products take fewer instructions than the branch.
-    if is_one_lane::<L>() || C::any_below_0(&m.tinted) {
-        let mut place = 0;
-        while place < 12 {
-            let tint: L = m.tint[if place < 9 { place } else { place - 3 }].lanes();
-            attenuation[place] = tint * attenuation[place];
-            place += 1;
-        }
-    }
+    let attenuation = if is_one_lane::<L>() || C::any_below_0(&m.tinted) {
+        let by: Four<L> = tint(m, 2);
+        [same(f) * tint(m, 0), tt * tint(m, 1), trt * by, rest * by]
+    } else {
+        [same(f), tt, trt, rest]
+    };
 
     L::stage("azimuth of each lobe");
     // The azimuth of wo, turned by -2 gamma_o, and by pi + 2 gamma_t for each passage.
@@ -289,6 +280,12 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     let [sin_cone, cos_cone] = cones(m, [sin_o, cos_o]);
     let concentration = cos_cone * four(&m.widths.inv_variance);
 
+    let [r, tt, trt, rest] = [
+        store4(apart(attenuation[0])),
+        store4(apart(attenuation[1])),
+        store4(apart(attenuation[2])),
+        store4(apart(attenuation[3])),
+    ];
     ChiangPrepared {
         sin_cone: store4(apart(sin_cone)),
         cos_cone: store4(apart(cos_cone)),
@@ -300,23 +297,21 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         azimuth_v: store4(apart(v * by)),
         azimuth_w: store4(apart(w * by)),
         attenuation: [
-            attenuation[0].store(),
-            attenuation[1].store(),
-            attenuation[2].store(),
-            attenuation[3].store(),
-            attenuation[4].store(),
-            attenuation[5].store(),
-            attenuation[6].store(),
-            attenuation[7].store(),
-            attenuation[8].store(),
-            attenuation[9].store(),
-            attenuation[10].store(),
-            attenuation[11].store(),
+            r[0], r[1], r[2], tt[0], tt[1], tt[2], trt[0], trt[1], trt[2], rest[0], rest[1],
+            rest[2],
         ],
         fresnel: f.store(),
         path_length: path_length.store(),
         widths: m.widths.spread::<L>(),
     }
+}
+
+/// Returns the tint of the lobe with this place in each channel, and that of blue again.
+#[inline(always)]
+fn tint<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, place: usize) -> Four<L> {
+    let tint = &m.tint;
+    let blue = tint[3 * place + 2];
+    four(&[tint[3 * place], tint[3 * place + 1], blue, blue])
 }
 
 /// Returns true if `L` is one lane, for which compilers make vectors of equal steps.
