@@ -51,7 +51,7 @@ SUITES = {
     "hairis": (["-p", "hairis", "--all-features", "--test", "main"], SKIPPED, PORTABLE),
     "variants": (["-p", "hairis-variants", *VARIANTS, "--test", "main", "--test", "samplers"], SKIPPED, PORTABLE),
     "levels": (["-p", "hairis", "--all-features", "--test", "main"], [], FLAGS),
-    "printed": (["-p", "hairis-gradients", "-p", "hairis-shaders", "--test", "main"], [], PORTABLE),
+    "printed": (["-p", "hairis-gradients", "-p", "hairis-shaders", "--features", "hairis-shaders/spirv", "--test", "main"], [], PORTABLE),
     "all": (re.search(r"^cargo test(.*)$", (ROOT / "README.md").read_text(), re.M)[1].split(), [], FLAGS),
 }
 
