@@ -1,7 +1,9 @@
 //! Values of fields as a host sets them, by name and by index.
 
 use hairis::HairParams;
-use hairis_variants::{ChiangParams, FieldError, KajiyaKayParams, ModelId, Parameters, Values};
+use hairis_variants::{
+    ChiangParams, DEonParams, FieldError, KajiyaKayParams, ModelId, Parameters, Values,
+};
 
 #[test]
 fn a_wrong_name_count_or_word_is_an_error() {
@@ -59,7 +61,8 @@ fn a_field_takes_the_others_of_its_group_away() {
 #[test]
 fn every_model_is_scaled() {
     fn twice<P: Parameters>(fields: &[&str]) {
-        let params = P::default();
+        // The last preset is not the default.
+        let params = P::PRESETS[P::PRESETS.len() - 1].1;
         let (before, after) = (params.values(), params.scaled(0.5).unwrap().values());
         for field in P::FIELDS {
             let by = if fields.contains(&field.name) {
@@ -78,6 +81,7 @@ fn every_model_is_scaled() {
     twice::<HairParams>(&["i_r", "i_tt", "i_trt"]);
     twice::<KajiyaKayParams>(&["kd", "ks"]);
     twice::<ChiangParams>(&[]);
+    twice::<DEonParams>(&[]);
 }
 
 #[test]
