@@ -205,7 +205,7 @@ fn over_bound(model: ModelId, at: &mut Coordinates<'_>, arithmetic: Arithmetic) 
     let Some((allowed, allowed_pdf)) = formulas.error_bound(truth.wi) else {
         return [0.0; 2];
     };
-    // The bound is exact for a lobe that is not sampled, whose density is missing as a whole.
+    // The bound is exactly 1 for a lobe that is not sampled, whose density is missing as a whole: nothing is left to search there.
     let (errors, lobes, shares) = (
         formulas.lobe_errors(truth.wi).unwrap(),
         formulas.lobes(truth.wi),
@@ -213,7 +213,7 @@ fn over_bound(model: ModelId, at: &mut Coordinates<'_>, arithmetic: Arithmetic) 
     );
     let is_lost = Lobe::ALL
         .into_iter()
-        .any(|lobe| errors[lobe][1] >= 1.0 && shares[lobe] * lobes[lobe].pdf > 1e-3 * truth.pdf);
+        .any(|lobe| errors[lobe][1] == 1.0 && shares[lobe] * lobes[lobe].pdf > 1e-3 * truth.pdf);
     let mut worst = [0.0_f64; 2];
     for got in evals(&point, wi, arithmetic) {
         let over = |got: f32, want: f64, allowed: f64, cut: f64| {
