@@ -11,10 +11,11 @@ mod tails;
 
 use crate::support::{Draws, narrow};
 use crate::tolerance as bound;
-use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use core::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI};
 use hairis::model::math::{
     atan_eighth_turn, atan_unit, atan2_upper, gaussian, gaussian_and_complement, half_angle,
-    half_atan2, half_atan2_parts, log2_one_plus, sin_cos_absolute, sin_cos_twice, tan_half_turn,
+    half_atan2, half_atan2_parts, log2_near_one, log2_one_plus, sin_cos_absolute, sin_cos_twice,
+    tan_half_turn,
 };
 use hairis::simd::{Lanes, Level, f32x8};
 use hairis_conformance::comparison::LargestError;
@@ -392,6 +393,29 @@ fn a_logarithm_next_to_one_keeps_the_digits_of_the_difference() {
         !log2_one_plus(-1.0_f32).is_infinite(),
         "the end of the range"
     );
+}
+
+/// Either number may be rounded to the other side of the seam at `sqrt(1/2)`.
+#[test]
+fn a_logarithm_is_that_of_either_number_at_the_seam() {
+    for side in -40_i32..40 {
+        for off in -8_i32..9 {
+            let moved = |x: f32, by: i32| f32::from_bits(x.to_bits().wrapping_add_signed(by));
+            let x = moved(FRAC_1_SQRT_2, side);
+            // A place of the difference is half of one of `x`.
+            let less_one = moved(x - 1.0, off);
+            let got = both!(
+                [x, less_one],
+                |[x, less]| log2_near_one(x, less),
+                &mut LargestError::default()
+            );
+            let want = f64::from(x).log2();
+            assert!(
+                (f64::from(got) - want).abs() < 1e-6,
+                "{x:e}, {less_one:e}: {got} for {want}"
+            );
+        }
+    }
 }
 
 #[test]

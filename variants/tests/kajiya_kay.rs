@@ -1,7 +1,8 @@
 //! Kajiya and Kay's model under the suite that every model passes, in both forms.
 
-use crate::support::Draws;
-use hairis::{Hit, Lobe, LobeMask};
+use crate::support::{Draws, direction};
+use core::f64::consts::PI;
+use hairis::{Hit, Lobe, LobeMask, Material};
 use hairis_conformance::proptest::prelude::*;
 use hairis_conformance::{
     AnyMaterial, AsConserving, Claims, Expected, Materials, Subject, Tolerance, conformance,
@@ -202,3 +203,26 @@ impl Subject for KajiyaKayFibers {
 
 conformance!(reciprocal, AsConserving(KajiyaKayFibers(Form::Reciprocal)));
 conformance!(published, AsConserving(KajiyaKayFibers(Form::Published)));
+
+/// Where `cos^2` of the sum of the inclinations is `sqrt(1/2)`, its logarithm is computed from the sine on one side and from the cosine on the
+/// other, and roundings decide on which side each of the two is.
+#[test]
+fn the_highlight_has_no_seam() {
+    let x = 0.5_f64.powf(0.25).acos();
+    let mut draws = Draws(0x7365);
+    for _ in 0..1000 {
+        let desc = KajiyaKayDesc {
+            kd: [0.0; 3],
+            ..KajiyaKayFibers(Form::Reciprocal).desc(10.0)
+        };
+        let theta_o = draws.between(-0.9, 1.4);
+        let [wo, wi] = [theta_o, x - theta_o].map(|theta| direction(theta, draws.between(-PI, PI)));
+        let params = params(desc);
+        let bsdf = Material::new(&KajiyaKay, &params).prepare(wo);
+        let exact = formulas(&params, &wo.into()).eval([wi.x, wi.y, wi.z].map(f64::from));
+        for (value, exact) in bsdf.eval(wi).map(f64::from).into_iter().zip(exact) {
+            let error = (value / exact - 1.0).abs();
+            assert!(error < 2e-5, "{wo:?} {wi:?}: {value} for {exact}");
+        }
+    }
+}

@@ -122,6 +122,22 @@ fn side(step: u64) -> [f32; 2] {
     [float(fraction, -1 - small(rest), negative), off]
 }
 
+/// Steps next to a seam.
+const SEAM_STEPS: u64 = OFF << SIDE_INTERVALS;
+
+/// Returns a difference from 1 and a number of places by which its sum with 1 is off: those of [`side`], and every one next to
+/// `sqrt(1/2) - 1`, where the logarithm changes from the one to the other.
+#[inline]
+fn seam(step: u64) -> [f32; 2] {
+    let Some(mut rest) = step.checked_sub(SIDE_STEPS) else {
+        let [x, off] = side(step);
+        return [-x.abs(), off];
+    };
+    let off = digit(&mut rest, OFF) as f32 - 2.0;
+    let near = place(core::f32::consts::FRAC_1_SQRT_2 - 1.0) - (1 << (SIDE_INTERVALS - 1));
+    [at_place(near + rest as i64), off]
+}
+
 /// Moves a float by so many places, but not above 1 or to 0.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "a small whole number")]
@@ -245,7 +261,7 @@ pairs! {
     SIDE_STEPS; |step| side(step); |all| holds_side(all);
     |[x, off, z, w]| [moved(other_side(x), off).copysign(x), x.abs(), 0.0, 0.0]; |[y, x, z, w]| math::half_angle(y, x); |[y, x, z, w]| 0.5 * y.atan2(x);
     Log2NearOne, "log2_near_one(1 + f off by 2 places, f)", "logarithm", 2, [-1.0, 0.0];
-    SIDE_STEPS; |step| { let [x, off] = side(step); [-x.abs(), off] }; |all| holds_side(all) && all[0] < 0.0;
+    SIDE_STEPS + SEAM_STEPS; |step| seam(step); |all| holds_side(all) && all[0] < 0.0;
     |[f, off, z, w]| [moved(narrow(1.0 + f64::from(f)), off), f, 0.0, 0.0]; |[x, f, z, w]| math::log2_near_one(x, f);
     |[x, f, z, w]| if f > -0.292_893_2 { f.ln_1p() * core::f64::consts::LOG2_E } else { x.log2() };
     Difference, "Lanes::difference_of_products, factors", "difference", 4, [-2_147_483_648.0, 2_147_483_648.0];
@@ -295,6 +311,10 @@ mod tests {
         for step in (0..SIDE_STEPS).step_by(1009) {
             let [x, off] = side(step);
             assert!(holds_side([x, off, 0.0, 0.0]), "{x} {off}");
+        }
+        for step in (0..SIDE_STEPS + SEAM_STEPS).step_by(1009) {
+            let [f, off] = seam(step);
+            assert!(holds_side([f, off, 0.0, 0.0]) && f < 0.0, "{f} {off}");
         }
     }
 }
