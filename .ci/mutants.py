@@ -48,7 +48,7 @@ GROUPS = {
 PORTABLE = FLAGS + " --cfg=hairis_portable_alone"
 # Packages and features of each suite, what it skips, and its compiler flags.
 SUITES = {
-    "hairis": (["-p", "hairis", "--all-features", "--test", "main"], SKIPPED, PORTABLE),
+    "hairis": (["-p", "hairis", "--all-features", "--lib", "--test", "main"], SKIPPED, PORTABLE),
     "variants": (["-p", "hairis-variants", *VARIANTS, "--test", "main", "--test", "samplers"], SKIPPED, PORTABLE),
     "levels": (["-p", "hairis", "--all-features", "--test", "main"], [], FLAGS),
     "printed": (["-p", "hairis-gradients", "-p", "hairis-shaders", "--features", "hairis-shaders/spirv", "--test", "main"], [], PORTABLE),

@@ -4,7 +4,10 @@ use crate::support::{Draws, direction, lanes_of, packet};
 use glam::Vec3;
 use hairis::params::Rule;
 use hairis::simd::Level;
-use hairis::{Conserving, HairParams, Hit, Hit8, Lobe, LobeMask, Material, Material8, ParamError};
+use hairis::{
+    Conserving, Gaussian, HairParams, Hit, Hit8, Lobe, LobeMask, Matched, Material, Material8,
+    ParamError,
+};
 use hairis_variants::{
     AnyMaterial8, ChiangDesc, ChiangParams, DEonParams, Field, KajiyaKayParams, Kind, ModelId,
     Parameters, Registered, Visitor, WithDiffuseParams,
@@ -26,6 +29,13 @@ fn names_and_choices_are_distinct_and_found() {
     );
     let names: Vec<&str> = ModelId::defaults_of_names().map(ModelId::name).collect();
     assert_eq!(names[..2], ["gaussian", "cauchy"]);
+    let words = [
+        Matched::<Gaussian>::CHOICE,
+        Matched::<Gaussian, 5>::CHOICE,
+        Matched::<Gaussian, 25>::CHOICE,
+    ];
+    let words = words.map(|choice| choice.map(|(_, word)| word));
+    assert_eq!(words, ["matched", "matched-5", "matched-25"].map(Some));
 }
 
 /// Every preset comes back from its values, every field has a place, and each refusal leads to its field.

@@ -121,19 +121,22 @@ mod tests {
                 assert_eq!(apart, expected, "{level}, a table each, place {place}");
             }
         }
+        // Lanes that are their own constants have the entries of either lane.
+        let each: Table<Pair<f32>> = Table::new(&from_fn(|entry| {
+            from_fn(|i| Pair(held(&tables[2], entry, i), held(&tables[3], entry, i)))
+        }));
         for (entry, x) in numbers.into_iter().enumerate() {
-            let pair = found(Pair(x, numbers[0]), &tables[2]);
-            for (place, Pair(one, other)) in pair.as_flattened().iter().enumerate() {
-                assert_eq!(
-                    *one,
-                    held(&tables[2], entry, place),
-                    "one lane, place {place}"
-                );
-                assert_eq!(
-                    *other,
-                    held(&tables[2], 0, place),
-                    "the other lane, place {place}"
-                );
+            let at = Pair(x, numbers[0]);
+            for (found, [first, second]) in
+                [(found(at, &tables[2]), [2, 2]), (found(at, &each), [2, 3])]
+            {
+                for (place, Pair(one, other)) in found.as_flattened().iter().enumerate() {
+                    let expected = [
+                        held(&tables[first], entry, place),
+                        held(&tables[second], 0, place),
+                    ];
+                    assert_eq!([*one, *other], expected, "entry {entry}, place {place}");
+                }
             }
         }
     }
