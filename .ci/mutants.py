@@ -2,7 +2,7 @@
 """Share of small faults in the kernels and the variants that their tests find. By hand, for hours; needs cargo-mutants.
 
     .ci/mutants.py run [GROUP...]   tests 300 mutants, of every group
-    .ci/mutants.py missed SUITE...  tests those that were missed again, by these: hairis, levels, variants, printed, all;
+    .ci/mutants.py missed SUITE...  tests those that were missed again, by these: hairis, levels, variants, listed, printed, all;
                                     with MUTANTS=REGEX those whose name it matches
     .ci/mutants.py write            writes benches/records/mutants.csv
 
@@ -50,6 +50,7 @@ PORTABLE = FLAGS + " --cfg=hairis_portable_alone"
 SUITES = {
     "hairis": (["-p", "hairis", "--all-features", "--lib", "--test", "main"], SKIPPED, PORTABLE),
     "variants": (["-p", "hairis-variants", *VARIANTS, "--test", "main", "--test", "samplers"], SKIPPED, PORTABLE),
+    "listed": (["-p", "hairis-variants", "--all-features", "--test", "main"], SKIPPED, PORTABLE),
     "levels": (["-p", "hairis", "--all-features", "--test", "main"], [], FLAGS),
     "printed": (["-p", "hairis-gradients", "-p", "hairis-shaders", "--features", "hairis-shaders/spirv", "--test", "main"], [], PORTABLE),
     "all": (re.search(r"^cargo test(.*)$", (ROOT / "README.md").read_text(), re.M)[1].split(), [], FLAGS),

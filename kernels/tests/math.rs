@@ -395,7 +395,7 @@ fn a_logarithm_next_to_one_keeps_the_digits_of_the_difference() {
     );
 }
 
-/// Either number may be rounded to the other side of the seam at `sqrt(1/2)`.
+/// Rounds either number to both sides of the seam at `sqrt(1/2)`.
 #[test]
 fn a_logarithm_is_that_of_either_number_at_the_seam() {
     for side in -40_i32..40 {
