@@ -204,8 +204,8 @@ impl Subject for KajiyaKayFibers {
 conformance!(reciprocal, AsConserving(KajiyaKayFibers(Form::Reciprocal)));
 conformance!(published, AsConserving(KajiyaKayFibers(Form::Published)));
 
-/// Where `cos^2` of the sum of the inclinations is `sqrt(1/2)`, its logarithm is computed from the sine on one side and from the cosine on the
-/// other, and roundings decide on which side each of the two is.
+/// Looks at directions where `cos^2` of the sum of the inclinations is `sqrt(1/2)`. Its logarithm is computed from the sine on one side and from
+/// the cosine on the other, and roundings decide on which side each of the two is.
 #[test]
 fn the_highlight_has_no_seam() {
     let x = 0.5_f64.powf(0.25).acos();
