@@ -36,7 +36,7 @@ part() { # part NAME WORD COMMAND...
 }
 round() { # round SEED
   HAIRIS_SEED=$1 HAIRIS_CASES=4 cargo test -q --locked -p hairis -p hairis-variants --all-features --test main --test samplers --test uphill \
-    --no-fail-fast -- --include-ignored
+    --no-fail-fast -- --include-ignored --skip record_of
 }
 rounds=${1:-1}
 for round in $(seq "$rounds"); do
@@ -54,7 +54,8 @@ energy() {
   HAIRIS_MATERIALS=10000 cargo test -q --locked --release -p hairis --all-features --test main conserves_energy -- --nocapture
 }
 ignored() {
-  cargo test -q --locked -p hairis-harness -p hairis-study -- --ignored && cargo test -q --locked --release -p hairis-render --test main -- --ignored
+  cargo test -q --locked -p hairis-variants --all-features --test main record_of -- --ignored &&
+    cargo test -q --locked -p hairis-harness -p hairis-study -- --ignored && cargo test -q --locked --release -p hairis-render --test main -- --ignored
 }
 listed() {
   cargo test -q --locked -p hairis-harness -p hairis-study -p hairis-render -p hairis-variants -p hairis-gradients --features hairis-variants/every-sampler
