@@ -25,6 +25,7 @@ pub(crate) const NORMAL_TAIL_RATIO: f64 = 5.9e-7; // 5.7e-7, x in [0, 12.6], rel
 pub(crate) const NORMAL_TAIL_INVERSE: [f64; 2] = [1.4e-7, 2.7e-4]; // 1.02e-7, 2.1e-4: of q, absolute and relative, q above 2^-116
 pub(crate) const COMPLEMENT: f64 = 3.3; // 2.7, one lane, which does not fuse
 pub(crate) const LOG2_ONE_PLUS: f64 = 3.2; // 2.6
+pub(crate) const LOG2_SEAM: f64 = 1e-6; // 5.3e-7: of numbers that differ by 4 places
 pub(crate) const ATAN_EIGHTH: f64 = 1.1; // 0.86
 // Compiled for x86-64-v3, whose eight lanes fuse: 4 and 3 ULP from one lane, both within the bounds above of f64.
 pub(crate) const COMPLEMENT_LANES: f64 = 5.0;

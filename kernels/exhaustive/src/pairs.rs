@@ -7,6 +7,8 @@
 //! - **Scales.** Every pair of exponents that the function admits, with 64 pairs of mantissas.
 //! - **Sine and cosine.** Every exponent by 2^15 mantissas for either of them, either sign, and the other as a float up to two places
 //!   from the one that is nearest.
+//! - **Numbers near 1.** The same for a number and its difference from 1, and every difference next to `sqrt(1/2) - 1`, where the logarithm
+//!   changes from the one to the other.
 //! - **Cancellation.** Differences of two products that agree in none to all 24 of their first bits, with all signs, a million of each,
 //!   and factors from 2^-31 to 2^31: halves of much smaller products are denormal.
 //!
@@ -122,19 +124,20 @@ fn side(step: u64) -> [f32; 2] {
     [float(fraction, -1 - small(rest), negative), off]
 }
 
-/// Steps next to a seam.
-const SEAM_STEPS: u64 = OFF << SIDE_INTERVALS;
+/// Number of floats around a seam, as a power of two.
+const SEAM_PLACES: u32 = 15;
+/// Steps of a difference from 1: those of sine and cosine, and those around the seam.
+const NEAR_ONE_STEPS: u64 = SIDE_STEPS + (OFF << SEAM_PLACES);
 
-/// Returns a difference from 1 and a number of places by which its sum with 1 is off: those of [`side`], and every one next to
-/// `sqrt(1/2) - 1`, where the logarithm changes from the one to the other.
+/// Returns a difference from 1, and by how many places, from -2 to 2, its sum with 1 is off.
 #[inline]
-fn seam(step: u64) -> [f32; 2] {
+fn near_one(step: u64) -> [f32; 2] {
     let Some(mut rest) = step.checked_sub(SIDE_STEPS) else {
         let [x, off] = side(step);
         return [-x.abs(), off];
     };
     let off = digit(&mut rest, OFF) as f32 - 2.0;
-    let near = place(core::f32::consts::FRAC_1_SQRT_2 - 1.0) - (1 << (SIDE_INTERVALS - 1));
+    let near = place(core::f32::consts::FRAC_1_SQRT_2 - 1.0) - (1 << (SEAM_PLACES - 1));
     [at_place(near + rest as i64), off]
 }
 
@@ -261,7 +264,7 @@ pairs! {
     SIDE_STEPS; |step| side(step); |all| holds_side(all);
     |[x, off, z, w]| [moved(other_side(x), off).copysign(x), x.abs(), 0.0, 0.0]; |[y, x, z, w]| math::half_angle(y, x); |[y, x, z, w]| 0.5 * y.atan2(x);
     Log2NearOne, "log2_near_one(1 + f off by 2 places, f)", "logarithm", 2, [-1.0, 0.0];
-    SIDE_STEPS + SEAM_STEPS; |step| seam(step); |all| holds_side(all) && all[0] < 0.0;
+    NEAR_ONE_STEPS; |step| near_one(step); |all| holds_side(all) && all[0] < 0.0;
     |[f, off, z, w]| [moved(narrow(1.0 + f64::from(f)), off), f, 0.0, 0.0]; |[x, f, z, w]| math::log2_near_one(x, f);
     |[x, f, z, w]| if f > -0.292_893_2 { f.ln_1p() * core::f64::consts::LOG2_E } else { x.log2() };
     Difference, "Lanes::difference_of_products, factors", "difference", 4, [-2_147_483_648.0, 2_147_483_648.0];
@@ -303,6 +306,16 @@ mod tests {
     }
 
     #[test]
+    fn numbers_and_differences_are_on_different_sides_of_the_seam() {
+        let half = core::f32::consts::FRAC_1_SQRT_2;
+        let apart = (SIDE_STEPS..NEAR_ONE_STEPS)
+            .map(near_one)
+            .map(|[f, off]| [f < half - 1.0, moved(1.0 + f, off) < half]);
+        let apart: Vec<bool> = apart.filter(|[f, x]| f != x).map(|[f, _]| f).collect();
+        assert!(apart.contains(&true) && apart.contains(&false));
+    }
+
+    #[test]
     fn all_steps_are_in_the_domains() {
         for step in (0..pair_steps(LENGTH)).step_by(10_007) {
             let [y, x] = pair(step, LENGTH);
@@ -312,8 +325,8 @@ mod tests {
             let [x, off] = side(step);
             assert!(holds_side([x, off, 0.0, 0.0]), "{x} {off}");
         }
-        for step in (0..SIDE_STEPS + SEAM_STEPS).step_by(1009) {
-            let [f, off] = seam(step);
+        for step in (0..NEAR_ONE_STEPS).step_by(1009) {
+            let [f, off] = near_one(step);
             assert!(holds_side([f, off, 0.0, 0.0]) && f < 0.0, "{f} {off}");
         }
     }

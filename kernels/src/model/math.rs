@@ -338,14 +338,14 @@ pub fn log2<L: Lanes>(x: L) -> L {
 }
 
 /// Computes the logarithm to the base 2 of `x` in `(0, 1]`, where `less_one`, which is `x - 1`, is known with more digits than `x`
-/// has. `less_one` alone is read where it is above `sqrt(1/2) - 1`.
+/// has. Where `less_one` is above `sqrt(1/2) - 1`, it alone is read.
 #[inline(always)]
 pub fn log2_near_one<L: Lanes>(x: L, less_one: L) -> L {
     let (mantissa, exponent) = x.split_exponent();
     let f = (mantissa - 1.0).interleaved();
     let near = L::splat(-0.292_893_2).lt(less_one);
     let f = L::select(near, less_one, f);
-    // Next to the seam the exponent of `x`, which is rounded for itself, may be -1.
+    // `x` is rounded separately, so that next to the seam its exponent may be -1.
     let exponent = L::select(near, L::splat(0.0), exponent);
     polynomial(f, LOG2_MANTISSA).mul_add(f, exponent)
 }

@@ -121,7 +121,7 @@ mod tests {
                 assert_eq!(apart, expected, "{level}, a table each, place {place}");
             }
         }
-        // Lanes that are their own constants have the entries of either lane.
+        // Lanes that are their own constants: each lane reads its own table.
         let each: Table<Pair<f32>> = Table::new(&from_fn(|entry| {
             from_fn(|i| Pair(held(&tables[2], entry, i), held(&tables[3], entry, i)))
         }));

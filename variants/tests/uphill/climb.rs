@@ -29,12 +29,20 @@ pub(crate) struct Found {
     pub(crate) evaluations: u64,
 }
 
+/// Length of a search.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Budget {
+    Time(Duration),
+    Evaluations(u64),
+}
+
 /// Search under way.
 struct Search<F> {
     function: F,
     dimension: usize,
     draws: Draws,
-    end: Instant,
+    begin: Instant,
+    budget: Budget,
     found: Found,
 }
 
@@ -45,25 +53,25 @@ struct Climber {
     value: f64,
 }
 
-/// Searches for the largest value of a function of so many numbers in `[0, 1]`, for so long: half of the time at random points, half uphill from
+/// Searches for the largest value of a function of so many numbers in `[0, 1]`, for so long: half of it at random points, half uphill from
 /// the best of them and from `start`, if there is one, and then from the best of others. A NaN counts as the largest value of all.
 pub(crate) fn climb(
     dimension: usize,
     function: impl FnMut(&[f32]) -> f64,
     start: Option<&[f32]>,
     draws: Draws,
-    time: Duration,
+    budget: Budget,
 ) -> Found {
-    let begin = Instant::now();
     let mut search = Search {
         function,
         dimension,
         draws,
-        end: begin + time,
+        begin: Instant::now(),
+        budget,
         found: Found::default(),
     };
     let mut best = Vec::new();
-    while begin.elapsed() < time / 2 {
+    while !search.has_used(0.5) {
         search.pool(&mut best);
     }
     search.found.sampled = search.found.searched;
@@ -79,8 +87,16 @@ pub(crate) fn climb(
 }
 
 impl<F: FnMut(&[f32]) -> f64> Search<F> {
+    /// Returns true if this share of the budget is used.
+    fn has_used(&self, share: f64) -> bool {
+        match self.budget {
+            Budget::Time(time) => self.begin.elapsed() >= time.mul_f64(share),
+            Budget::Evaluations(count) => self.found.evaluations as f64 >= share * count as f64,
+        }
+    }
+
     fn is_over(&self) -> bool {
-        Instant::now() >= self.end
+        self.has_used(1.0)
     }
 
     fn value(&mut self, at: &[f32]) -> f64 {
@@ -160,11 +176,11 @@ fn a_peak_is_found_that_random_points_miss() {
         let x: Vec<f64> = x.iter().map(|x| f64::from(*x)).collect();
         let across: f64 = x[1..].iter().map(|y| (y - x[0] * x[0]).powi(2)).sum();
         let noise = 1e-6 * (1e9 * x[0]).sin();
-        x[0] / (1.0 + 1e4 * across) + noise
+        x[0] / (1.0 + 1e3 * across) + noise
     };
-    let found = climb(5, height, None, Draws(1), Duration::from_secs(1));
+    let found = climb(8, height, None, Draws(1), Budget::Evaluations(2_000_000));
     assert!(
-        found.sampled < 0.5 && found.searched > 0.9,
+        found.sampled < 0.5 && found.searched > 0.5,
         "sampled {}, searched {}",
         found.sampled,
         found.searched

@@ -18,7 +18,7 @@ mod climb;
 mod energy;
 mod point;
 
-use climb::{Found, climb};
+use climb::{Budget, Found, climb};
 use core::sync::atomic::{AtomicUsize, Ordering};
 use core::time::Duration;
 use hairis::simd::Level;
@@ -107,7 +107,13 @@ impl Bound {
             // NaN is larger than all numbers.
             figures.max_by(f64::total_cmp).unwrap()
         };
-        climb(self.dimension(), worst, start, Draws(seed), time)
+        climb(
+            self.dimension(),
+            worst,
+            start,
+            Draws(seed),
+            Budget::Time(time),
+        )
     }
 }
 
