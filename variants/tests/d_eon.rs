@@ -28,13 +28,6 @@ fn formulas(params: &DEonParams, hit: &Hit) -> DEonReference<f64> {
     DEonReference::prepare(&params.desc().map(f64::from), wo)
 }
 
-/// Returns the width of the narrowest lobe, longitudinal or azimuthal, in rad: of R at its edge, of TT, and of the Gaussians of TRT.
-fn narrowest(desc: &DEonDesc) -> f64 {
-    let [r, eta] = [desc.roughness, desc.eta].map(f64::from);
-    let tt = 0.5 * r * (eta * eta - 1.0).sqrt();
-    (0.1 * r * core::f64::consts::SQRT_2).min(tt)
-}
-
 impl Subject for DEonFibers {
     type Model = DEon;
 
@@ -189,16 +182,7 @@ impl Subject for DEonFibers {
     }
 
     fn reference(&self, params: &DEonParams, hit: &Hit) -> Option<Expected> {
-        let bound = 1e-5 + 5e-7 / narrowest(params.desc());
-        let [_, v, w] = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
-        let peak = 0.4 / (f64::from(params.desc().roughness) * 0.1);
         let tolerance = Tolerance {
-            value: bound,
-            pdf: bound,
-            lobes: Some(bound),
-            floor: (-12.0_f64).exp() * 0.5 * peak.max(0.1) / v.hypot(w).max(1e-3),
-            // The azimuth at which TT ends is rounded as well as that of the direction.
-            rounding: 5e-7,
             direction: Some(1e-5),
             ..Tolerance::default()
         };

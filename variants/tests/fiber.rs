@@ -6,7 +6,7 @@ use hairis_conformance::proptest::{self, prelude::*};
 use hairis_conformance::{
     AnyMaterial, Claims, Expected, Materials, Subject, Tolerance, strategies,
 };
-use hairis_reference::{ChiangFormulas as _, ChiangReference, Reference, Selection};
+use hairis_reference::{ChiangReference, Reference, Selection};
 use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParams, Shifts};
 
 /// The model with one of its selections.
@@ -22,13 +22,6 @@ pub(crate) fn rough(beta_m: f32, beta_n: f32) -> ChiangDesc {
         beta_n,
         ..ChiangDesc::default()
     }
-}
-
-/// Returns the width of the narrowest lobe, longitudinal or azimuthal, in rad.
-pub(crate) fn narrowest(desc: &ChiangDesc) -> f64 {
-    let least = |widths: [f32; 3]| f64::from(widths.into_iter().fold(f32::INFINITY, f32::min));
-    let along = least(desc.width_m) * f64::from(desc.longitudinal_variance()).sqrt();
-    along.min(least(desc.width_n) * f64::from(desc.azimuthal_scale()))
 }
 
 /// Tints the lobes, and makes each wider or narrower by up to a factor of two.
@@ -266,23 +259,7 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
     }
 
     fn reference(&self, params: &ChiangParams, hit: &Hit) -> Option<Expected> {
-        let desc = params.desc();
-        let width = narrowest(desc);
-        // An angle is off by 1.2e-7 and less, and a lobe as steep as it is narrow: see tests/accuracy.rs.
-        let bound = 5e-6 + 5e-7 / width;
-        // From exp(-12) of a lobe's peak down the error grows with the exponent.
-        let tau = core::f64::consts::TAU;
-        let (p, of) = (desc.map(f64::from), [0, 1, 2]);
-        let peaks = of.map(|lobe| 0.5 / (tau * p.variances().0[lobe]).sqrt() / p.scales().0[lobe]);
-        let peak = peaks.into_iter().fold(0.0, f64::max);
-        let [_, v, w] = double(hit);
-        // Next to the axis the lobes are as much higher as the circle about it is smaller.
-        let floor = (-12.0_f64).exp() * 0.5 * peak.max(0.1) / v.hypot(w).max(1e-3);
         let tolerance = Tolerance {
-            value: bound,
-            pdf: bound,
-            lobes: Some(bound),
-            floor,
             direction: Some(1e-5),
             ..Tolerance::default()
         };

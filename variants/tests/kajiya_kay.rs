@@ -176,14 +176,9 @@ impl Subject for KajiyaKayFibers {
     }
 
     fn reference(&self, params: &KajiyaKayParams, hit: &Hit) -> Option<Expected> {
-        // The logarithm of the bell is rounded: beyond exp(-17) of the peak, 3e-6 + 4e-7 * 17 is above the tolerance.
-        let tolerance = Tolerance {
-            floor: 4e-8,
-            ..Tolerance::default()
-        };
         Some(Expected {
             reference: Box::new(formulas(params, hit)),
-            tolerance,
+            tolerance: Tolerance::default(),
         })
     }
 

@@ -6,6 +6,14 @@ pub fn relative(got: impl Into<f64>, want: f64, floor: f64) -> f64 {
     (got.into() - want).abs() / want.abs().max(floor)
 }
 
+/// Returns the error of a number over the one that is allowed. An error below `floor`, where a bell is cut off, or of a denormal is none.
+#[must_use]
+pub fn over(got: f32, want: f64, allowed: f64, floor: f64) -> f64 {
+    let error = (f64::from(got) - want).abs() - floor - f64::from(f32::MIN_POSITIVE);
+    // NaN is the largest error of all.
+    if error <= 0.0 { 0.0 } else { error / allowed }
+}
+
 /// Largest error of one quantity so far, and its place. NaN counts as the largest of all.
 #[derive(Clone, Debug, Default)]
 pub struct LargestError {

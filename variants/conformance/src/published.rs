@@ -107,7 +107,7 @@ impl Tested {
             formulas: formulas::<S>(),
             over_cauchy: S::OVER_CAUCHY,
             pdf_floor: S::PDF_FLOOR,
-            rows: S::ROWS,
+            rows: S::ROWS.of_this_run(),
             docs: S::DOCS,
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::cases::Property;
 use crate::cases::inputs::Inputs;
-use crate::comparison::relative;
+use crate::comparison::{over, relative};
 use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst, not_claimed};
 use crate::probe::{Direction, cos_theta, double, packet, rounded, triples};
@@ -38,7 +38,7 @@ fn excess(
 }
 
 /// Checks that values, densities, lobes and samples are those of the [`Reference`], if the subject has one: on one lane and on every
-/// level, on its named materials and on its random ones.
+/// level, on its named materials and on its random ones. Where the reference bounds errors by argument, that is the tolerance.
 ///
 /// # Errors
 ///
@@ -75,13 +75,17 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
                 return Ok(());
             };
             let bsdf = trial.material(lane).prepare(hit);
+            let (allowed, of_lobes) = (
+                reference.error_bound(double(wi)),
+                reference.lobe_errors(double(wi)),
+            );
             let lanes = levels
                 .iter()
                 .map(|(e, s, level)| (e.lane(lane), s.lane(lane), *level));
             let one = (bsdf.eval_pdf(wi), bsdf.sample(xi), "one lane");
             for (e, s, level) in lanes.chain([one]) {
                 let at = || trial.at(lane, level);
-                see_eval(worst, &*reference, e, wi, &tolerance, &at);
+                see_eval(worst, &*reference, e, (wi, allowed), &tolerance, &at);
                 compare_sample(&*reference, s, xi, &tolerance, &at)?;
                 compared.set(compared.get() + 1);
             }
@@ -98,21 +102,18 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
             let lobes = bsdf.lobes(wi);
             for lobe in Lobe::ALL {
                 let (value, pdf) = (lobes[lobe].value, lobes[lobe].pdf);
-                let value = excess(
-                    f64::from(value),
-                    |d| reference.lobe_values(d)[lobe],
-                    wi,
-                    bound,
-                    &tolerance,
-                );
-                let pdf = excess(
-                    f64::from(pdf),
-                    |d| reference.lobe_pdfs(d)[lobe],
-                    wi,
-                    bound,
-                    &tolerance,
-                );
-                for error in [value, pdf] {
+                let wants = [
+                    &(|d| reference.lobe_values(d)[lobe]) as &dyn Fn([f64; 3]) -> f64,
+                    &|d| reference.lobe_pdfs(d)[lobe],
+                ];
+                for (k, (got, at)) in [value, pdf].into_iter().zip(wants).enumerate() {
+                    let error = match of_lobes {
+                        Some(errors) => {
+                            let want = at(double(wi));
+                            over(got, want, want * errors[lobe][k], tolerance.floor * bound)
+                        }
+                        None => excess(f64::from(got), at, wi, bound, &tolerance),
+                    };
                     worst[2].see(error, || {
                         let lobe = subject.lobe(lobe);
                         format!("{lobe} {lobes:?}: {}", trial.at(lane, "one lane"))
@@ -136,7 +137,7 @@ fn see_eval(
     [value, pdf, _]: &mut [Worst; 3],
     reference: &dyn Reference<f64>,
     got: Eval,
-    wi: Direction,
+    (wi, allowed): (Direction, Option<([f64; 3], f64)>),
     tolerance: &Tolerance,
     at: &impl Fn() -> String,
 ) {
@@ -148,6 +149,19 @@ fn see_eval(
             at()
         )
     };
+    if let Some((allowed, allowed_pdf)) = allowed {
+        let s = reference.eval(double(wi));
+        for (c, x) in got.value.into_iter().enumerate() {
+            value.see(
+                over(x, s[c], allowed[c], tolerance.floor * tolerance.value),
+                want,
+            );
+        }
+        let floor = tolerance.floor * tolerance.pdf;
+        let error = over(got.pdf, reference.pdf(double(wi)), allowed_pdf, floor);
+        pdf.see(error, want);
+        return;
+    }
     for (c, x) in got.value.into_iter().enumerate() {
         value.see(
             excess(

@@ -226,7 +226,8 @@ pub struct Expected {
     pub tolerance: Tolerance,
 }
 
-/// Tolerances against the [`Reference`] at directions further than 1e-3 rad from the axis.
+/// Tolerances against the [`Reference`] at directions further than 1e-3 rad from the axis. Where it bounds errors by argument
+/// ([`Reference::error_bound`]), S, density and lobes have these bounds in place of tolerances.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
     /// Relative error of S.
@@ -237,7 +238,7 @@ pub struct Tolerance {
     pub lobes: Option<f64>,
     /// Least value that every lobe has where lobes are compared.
     pub lobe_floor: f64,
-    /// Values and densities below this floor are compared absolutely.
+    /// Values and densities below this floor are compared absolutely: to the floor times the tolerance.
     pub floor: f64,
     /// Backward error in rad: results may also differ by the change that moving the direction by this angle causes.
     pub rounding: f64,
@@ -252,7 +253,8 @@ impl Default for Tolerance {
             pdf: 1e-5,
             lobes: Some(1e-5),
             lobe_floor: 0.0,
-            floor: 1e-20,
+            // Where bells of single precision end.
+            floor: 1e-17,
             rounding: 2.5e-7,
             direction: Some(1e-4),
         }

@@ -1,8 +1,9 @@
 //! Tests that one lane rounds every product, and that levels that fuse are close to it.
 
 use super::Tested;
-use super::support::{Draws, Kind, Point, for_each_point, lanes_of, packet};
-use crate::comparison::{LargestError, relative};
+use super::support::{Draws, Kind, Point, double, for_each_point, packet};
+use super::values::FLOOR;
+use crate::comparison::{LargestError, over};
 use crate::size::cases;
 use glam::Vec3;
 use hairis::Hit;
@@ -32,35 +33,24 @@ fn tame(point: &Point) -> Vec<Vec3> {
 }
 
 pub fn levels_agree_with_one_lane(tested: &Tested) {
-    let mut worst: [LargestError; 3] = Default::default();
-    for_each_point(tested, Kind::Wide, |material, _, point| {
+    let mut worst: [LargestError; 2] = Default::default();
+    for_each_point(tested, Kind::Wide, |material, reference, point| {
         let bsdf = material.prepare(point.wo);
-        let mut draws = Draws(point.seed + 7);
         for eight in tame(point).chunks(8) {
-            let xi: [_; 8] = core::array::from_fn(|_| draws.xi3());
             for level in Level::available() {
-                let (evals, samples) = (
-                    bsdf.with_level(level).eval_pdf8(&packet(eight)),
-                    bsdf.with_level(level).sample8(&lanes_of(&xi)),
-                );
+                let evals = bsdf.with_level(level).eval_pdf8(&packet(eight));
                 for (lane, wi) in eight.iter().enumerate() {
-                    let at = || format!("{level} wo {:?} wi {wi:?} xi {:?}", point.wo, xi[lane]);
+                    let at = || format!("{level} wo {:?} wi {wi:?}", point.wo);
+                    let (allowed, allowed_pdf) = reference.error_bound(double(*wi)).unwrap();
                     let (a, b) = (bsdf.eval_pdf(*wi), evals.lane(lane));
-                    worst[0].see(relative(b.value[0], f64::from(a.value[0]), 1e-20), at);
-                    worst[1].see(relative(b.pdf, f64::from(a.pdf), 0.0), at);
-                    let (Some(a), Some(b)) = (bsdf.sample(xi[lane]), samples.lane(lane)) else {
-                        continue;
-                    };
-                    assert_eq!(a.lobe, b.lobe, "{}", at());
-                    worst[2].see(f64::from((a.wi - b.wi).length()), at);
+                    let [s, pdf] = [a.value[0], a.pdf].map(f64::from);
+                    worst[0].see(over(b.value[0], s, allowed[0], FLOOR), at);
+                    worst[1].see(over(b.pdf, pdf, allowed_pdf, tested.pdf_floor), at);
                 }
             }
         }
     });
-    worst[0].check("S of a level against one lane", tested.rows.levels[0]);
-    worst[1].check("pdf of a level against one lane", tested.rows.levels[1]);
-    worst[2].check(
-        "direction of a level against one lane",
-        tested.rows.levels[2],
-    );
+    // Either of the two numbers may be off by the bound.
+    worst[0].check("S of a level against one lane, over its bound", 2.0);
+    worst[1].check("pdf of a level against one lane, over its bound", 2.0);
 }

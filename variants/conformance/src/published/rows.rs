@@ -1,23 +1,12 @@
 //! Bounds on the errors of one model.
 
+use crate::probe::run_seed;
+
 /// Bounds of all tests of one model of the family. Rows that a model's tests do not read may be 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows {
-    /// Relative errors of S and density against the reference, further than 1e-3 rad from the axis, then those of a lobe alone: on the
-    /// efficiency grid and the presets.
-    pub grid: [f64; 4],
-    /// Bound for lobes that are all 0.5 degrees wide.
-    pub narrow: [f64; 4],
-    /// Bound for lobes that are all 60 degrees wide.
-    pub wide: [f64; 4],
     /// Relative error of the sum of the lobes against the whole.
     pub lobe_sum: f64,
-    /// Relative errors of samples against the reference at the direction they return: S, density, weight, off the seam and the axis.
-    pub grid_sample: [f64; 3],
-    /// Bound for lobes that are all 0.5 degrees wide.
-    pub narrow_sample: [f64; 3],
-    /// Bound for lobes that are all 60 degrees wide.
-    pub wide_sample: [f64; 3],
     /// Difference of the length of a sampled direction from 1.
     pub sample_length: f64,
     /// Errors of the cdf of the drawn angles against the numbers they were drawn with: theta, phi.
@@ -26,8 +15,6 @@ pub struct Rows {
     pub narrow_cdf: [f64; 2],
     /// Bound for lobes that are all 60 degrees wide.
     pub wide_cdf: [f64; 2],
-    /// Errors of a level that fuses against one lane that does not, wide lobes off the seam and the axis: S, density, direction.
-    pub levels: [f64; 3],
     /// Relative error of the directional albedo of a lobe against quadrature.
     pub albedo: f64,
     /// Error of the directional albedo of a lobe of any width, seen from further than 1e-5 rad from the axis, relative to at least 1e-9.
@@ -37,8 +24,6 @@ pub struct Rows {
     pub albedo_mesh: f64,
     /// Relative error of the reciprocity of S, wide and grid materials.
     pub reciprocity: f64,
-    /// Relative error of the density of a sample against that of its direction, times `width / (width + 0.1)` with the least width.
-    pub sample_eval: f64,
     /// Ratio of a weight to its proven bound, for the published sampler.
     pub weight_bound: f64,
     /// Error of the integral of a lobe's density against 1: grid, narrow and wide materials; matched samplers.
@@ -54,4 +39,25 @@ pub struct Rows {
     /// Bounds with 5, 9 and 25 bands, under constant light over the grid: largest V, and the least gain over the published sampler, as a
     /// geometric mean and anywhere.
     pub gain: [[f64; 3]; 3],
+}
+
+impl Rows {
+    /// Returns the rows for the seed of this run. Rows are the largest errors of forty seeds and a little more, which CI's seed keeps. The
+    /// worst cases of another seed may be twice as large: see False alarms in the documentation of this crate.
+    pub(crate) fn of_this_run(self) -> Self {
+        let by = if run_seed() == 0 { 1.0 } else { 2.0 };
+        let all = |row: [f64; 2]| row.map(|x| by * x);
+        Self {
+            lobe_sum: by * self.lobe_sum,
+            sample_length: by * self.sample_length,
+            grid_cdf: all(self.grid_cdf),
+            narrow_cdf: all(self.narrow_cdf),
+            wide_cdf: all(self.wide_cdf),
+            albedo: by * self.albedo,
+            albedo_any: by * self.albedo_any,
+            albedo_mesh: by * self.albedo_mesh,
+            reciprocity: by * self.reciprocity,
+            ..self
+        }
+    }
 }

@@ -123,7 +123,7 @@ pub fn oracle(
     formulas.prepare(&parameters(params, factor), double(wo))
 }
 
-/// Kinds of material that bounds are stated for.
+/// Kinds of material that tests go through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// Materials of the grid of the efficiency figures, and the presets.

@@ -16,8 +16,19 @@ const ALONG: f64 = 1.2e-6;
 const AZIMUTH: f64 = 4e-7;
 /// Error of `theta_o` in the fit of TRT, rad.
 const INCLINATION: f64 = 3e-7;
+/// Error of the cosine of half the azimuth where it vanishes: a difference of products, of which each is off by the square of a rounding.
+const OPPOSITE: f64 = 4e-16;
 /// Error of the sine of half the azimuth and of `q` together, relative: ten roundings.
 const EDGE: f64 = 6e-7;
+
+/// Returns the share that a number has of another one, at most 1.
+fn share<T: Real>(of: T, whole: T) -> T {
+    if whole > of {
+        of / whole
+    } else {
+        T::from_f64(1.0)
+    }
+}
 
 impl<T: Real> DEonReference<T> {
     /// Returns the relative errors of each lobe's value and density; none where rounding decides whether the azimuth is one of TT.
@@ -25,13 +36,13 @@ impl<T: Real> DEonReference<T> {
         let number = T::from_f64;
         let [sin, cos] = inclination(wi);
         let phi = wi[2].atan2(wi[1]) - self.phi_o;
-        let half @ [sin_half, _] = self.half(phi);
+        let half @ [sin_half, cos_half] = self.half(phi);
         let (beyond, off) = (self.passage.beyond(half)[0], number(EDGE) * sin_half);
         if beyond.abs() < off + off {
             return None;
         }
         // N of TT vanishes with a difference of two sines, and A with the square of it.
-        let edge = off / beyond.max(off);
+        let edge = share(off, beyond);
         Some(four(Lobe::FOUR.map(|lobe| {
             let plain = number(ARITHMETIC);
             if lobe == DIFFUSE {
@@ -41,8 +52,8 @@ impl<T: Real> DEonReference<T> {
             let along =
                 (plain + number(ALONG) / width) * (exponent / number(12.0)).max(number(1.0));
             let [value, pdf] = match lobe {
-                // The exponent has the square of the azimuth's cosine.
-                Lobe::R => [number(4e-7) * exponent; 2],
+                // The exponent has the square of the cosine of half the azimuth, which is a difference of products next to half a turn.
+                Lobe::R => [number(4e-7) * exponent + share(number(OPPOSITE), cos_half); 2],
                 Lobe::TT => [number(3.0) * edge, edge],
                 _ => [self.error_trt(wrap(phi)); 2],
             };
@@ -58,14 +69,14 @@ impl<T: Real> DEonReference<T> {
         let [beyond, steepness] = self.passage.beyond(half);
         let off = T::from_f64(EDGE) * sin_half;
         let of_n = self.cone_tt.density(sin, cos) * steepness * off;
-        let share = if pdf > T::default() {
+        let of_pdf = if pdf > T::default() {
             self.probabilities[Lobe::TT] * of_n / pdf
         } else {
             T::default()
         };
-        let edge = T::from_f64(3.0) * off / beyond.max(off);
+        let edge = T::from_f64(3.0) * share(off, beyond);
         let at = &lobes[Lobe::TT];
-        [0, 1, 2].map(|c| at.value * at.color[c] * edge + value[c] * share)
+        [0, 1, 2].map(|c| at.value * at.color[c] * edge + value[c] * of_pdf)
     }
 
     /// Returns the relative error of the azimuth of TRT: how far it moves as its angles do, over a break of the fit as well, and as the
