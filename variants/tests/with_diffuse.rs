@@ -184,15 +184,15 @@ fn the_first_number_is_stretched() {
             let (Some(want), Some(got)) = (want, got) else {
                 continue;
             };
+            // Rounding moves the number, in a tail by far, and next to a bound of two lobes to the other.
+            let next = [first - 1e-5, first + 1e-5].map(|x| own.sample([x, second, third]));
+            let next = next.iter().flatten().filter(|next| next.lobe == got.lobe);
             if want.lobe == got.lobe {
-                assert!(want.wi.distance(got.wi) < 1e-3, "{want:?} {got:?}");
+                let moved = next.map(|next| want.wi.distance(next.wi));
+                let most = moved.fold(1e-5, f32::max);
+                assert!(want.wi.distance(got.wi) < most, "{want:?} {got:?}");
             } else {
-                // Next to a bound of two lobes.
-                let next = [first - 1e-5, first + 1e-5].map(|x| own.sample([x, second, third]));
-                assert!(
-                    next.iter().flatten().any(|next| next.lobe == got.lobe),
-                    "{want:?} {got:?}"
-                );
+                assert!(next.count() > 0, "{want:?} {got:?}");
             }
         }
     }
