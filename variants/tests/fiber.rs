@@ -260,6 +260,8 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
 
     fn reference(&self, params: &ChiangParams, hit: &Hit) -> Option<Expected> {
         let tolerance = Tolerance {
+            // Lobes with next to no energy in a channel are not sampled for it.
+            floor: 1e-17,
             direction: Some(1e-5),
             ..Tolerance::default()
         };

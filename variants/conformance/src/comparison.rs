@@ -6,12 +6,20 @@ pub fn relative(got: impl Into<f64>, want: f64, floor: f64) -> f64 {
     (got.into() - want).abs() / want.abs().max(floor)
 }
 
-/// Returns the error of a number over the one that is allowed. An error below `floor`, where a bell is cut off, or of a denormal is none.
+/// Returns the error of a number over the one that is allowed. A number below `floor` may have the relative error at the floor, one that
+/// is 0 or too small for a float may be as large as the floor, and a denormal may have any.
 #[must_use]
 pub fn over(got: f32, want: f64, allowed: f64, floor: f64) -> f64 {
-    let error = (f64::from(got) - want).abs() - floor - f64::from(f32::MIN_POSITIVE);
+    let least = f64::from(f32::MIN_POSITIVE);
+    let error = (f64::from(got) - want).abs() - least;
     // NaN is the largest error of all.
-    if error <= 0.0 { 0.0 } else { error / allowed }
+    if error <= 0.0 {
+        0.0
+    } else if want.abs() < least {
+        error / floor
+    } else {
+        error * want.abs() / (allowed * want.abs().max(floor))
+    }
 }
 
 /// Largest error of one quantity so far, and its place. NaN counts as the largest of all.

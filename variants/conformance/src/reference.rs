@@ -75,10 +75,7 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
                 return Ok(());
             };
             let bsdf = trial.material(lane).prepare(hit);
-            let (allowed, of_lobes) = (
-                reference.error_bound(double(wi)),
-                reference.lobe_errors(double(wi)),
-            );
+            let allowed = reference.error_bound(double(wi));
             let lanes = levels
                 .iter()
                 .map(|(e, s, level)| (e.lane(lane), s.lane(lane), *level));
@@ -99,7 +96,7 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
             {
                 continue;
             }
-            let lobes = bsdf.lobes(wi);
+            let (lobes, of_lobes) = (bsdf.lobes(wi), reference.lobe_errors(double(wi)));
             for lobe in Lobe::ALL {
                 let (value, pdf) = (lobes[lobe].value, lobes[lobe].pdf);
                 let wants = [
@@ -110,7 +107,7 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
                     let error = match of_lobes {
                         Some(errors) => {
                             let want = at(double(wi));
-                            over(got, want, want * errors[lobe][k], tolerance.floor * bound)
+                            over(got, want, want * errors[lobe][k], tolerance.floor)
                         }
                         None => excess(f64::from(got), at, wi, bound, &tolerance),
                     };
@@ -152,13 +149,10 @@ fn see_eval(
     if let Some((allowed, allowed_pdf)) = allowed {
         let s = reference.eval(double(wi));
         for (c, x) in got.value.into_iter().enumerate() {
-            value.see(
-                over(x, s[c], allowed[c], tolerance.floor * tolerance.value),
-                want,
-            );
+            value.see(over(x, s[c], allowed[c], tolerance.floor), want);
         }
-        let floor = tolerance.floor * tolerance.pdf;
-        let error = over(got.pdf, reference.pdf(double(wi)), allowed_pdf, floor);
+        let density = reference.pdf(double(wi));
+        let error = over(got.pdf, density, allowed_pdf, tolerance.floor);
         pdf.see(error, want);
         return;
     }

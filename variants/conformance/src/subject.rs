@@ -180,6 +180,9 @@ pub struct Claims {
     pub weight: f64,
     /// Error to which the lobes sum to the value.
     pub lobe_sum: f64,
+    /// Sum of lobes up to which S is compared with it: beyond, a part may be cut off at the largest float before it is weighed. Infinite for a
+    /// model without parts.
+    pub most: f64,
     /// Largest share of samples that may be discarded.
     pub discarded: f64,
     /// Absolute error to which the density integrates to the share of samples that are not discarded.
@@ -207,6 +210,7 @@ impl Default for Claims {
             sample_eval: 1e-5,
             weight: 1e-5,
             lobe_sum: 1e-5,
+            most: f64::INFINITY,
             discarded: 1e-3,
             integral: 1e-4,
             inversion: 1e-4,
@@ -238,7 +242,7 @@ pub struct Tolerance {
     pub lobes: Option<f64>,
     /// Least value that every lobe has where lobes are compared.
     pub lobe_floor: f64,
-    /// Values and densities below this floor are compared absolutely: to the floor times the tolerance.
+    /// Values and densities below this floor are compared absolutely.
     pub floor: f64,
     /// Backward error in rad: results may also differ by the change that moving the direction by this angle causes.
     pub rounding: f64,
@@ -253,8 +257,7 @@ impl Default for Tolerance {
             pdf: 1e-5,
             lobes: Some(1e-5),
             lobe_floor: 0.0,
-            // Where bells of single precision end.
-            floor: 1e-17,
+            floor: 1e-20,
             rounding: 2.5e-7,
             direction: Some(1e-4),
         }
