@@ -392,21 +392,23 @@ pub(super) fn mean_shares<L: Lanes, C: Broadcast<L>>(prepared: &ChiangPrepared<C
 pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(
     prepared: &ChiangPrepared<C>,
 ) -> PerLobe<L> {
-    let mut sum = Four::splat(0.0);
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    let (mut sum, mut squares) = (Four::splat(0.0), Four::splat(0.0));
     let mut c = 0;
     while c < 3 {
         let lobes: Four<L> = channel(prepared, c);
         let [r, tt, trt, rest] = apart(lobes);
         let total = (r + tt) + (trt + rest);
-        let share = lobes
-            * same(L::keep(
-                L::splat(f32::MIN_POSITIVE).lt(total),
-                L::quotient(L::splat(1.0), total),
-            ));
-        sum = share.mul_add(share, sum);
+        let black = total.lt(L::splat(f32::MIN_POSITIVE));
+        let inverse = L::quotient(L::select(black, zero, one), L::select(black, one, total));
+        let share = lobes * same(inverse);
+        sum = sum + share;
+        squares = share.mul_add(share, squares);
         c += 1;
     }
-    padded(sum.sqrt())
+    // A lobe that is about to appear by one channel has its share, where the root has no derivative.
+    let faint = squares.lt(Four::splat(1e-36));
+    padded(Four::select(faint, sum, squares.sqrt()))
 }
 
 impl ChiangPrepared<f32> {

@@ -220,7 +220,8 @@ impl<T: Copy> Values<T> {
     }
 
     /// Returns the index of the field `name`, or `None` if there is no such field.
-    #[inline]
+    // Inlined at every field of every model, this and `offset` would be 30 kB of the C library with every sampler.
+    #[inline(never)]
     #[must_use]
     pub fn index(&self, name: &str) -> Option<usize> {
         self.fields.iter().position(|field| field.name == name)
@@ -233,7 +234,7 @@ impl<T: Copy> Values<T> {
     }
 
     /// Returns the place of the field's first number among all numbers.
-    #[inline]
+    #[inline(never)]
     fn offset(&self, index: usize) -> usize {
         let before = &self.fields[..index];
         before.iter().map(|field| field.kind.width()).sum()
