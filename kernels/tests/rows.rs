@@ -26,7 +26,6 @@ pub(crate) const PUBLISHED: Rows = Rows {
     // 2.5e-5
     reciprocity: 3.2e-5,
     // 1 + 8.3e-7
-    weight_bound: 1.0 + 1.3e-6,
     integral: [0.0; 3],
     seam: [0.0; 3],
     tail_sample: [0.0; 4],
@@ -54,7 +53,6 @@ pub(crate) const MATCHED: Rows = Rows {
     albedo_mesh: 7e-5,
     // 2.5e-5
     reciprocity: 3.3e-5,
-    weight_bound: 0.0,
     // 4.2e-6, 7.4e-5, 7.5e-7
     integral: [5.5e-6, 9.6e-5, 9.8e-7],
     // 3.3e-6, 3.1e-6, 7.6e-7

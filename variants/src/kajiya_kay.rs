@@ -24,8 +24,9 @@ use hairis::{Hit, PerLobe};
 ///   `theta_i + theta_o` in proportion to `cos^p`, and its sign in proportion to the remaining cosines. Azimuths are uniform.
 /// - Weights: at most `kd` over the probability of the diffuse lobe plus `ks (p + 2) / (p + 1)` over that of the specular lobe.
 /// - Source: Kajiya & Kay 1989, with corrections of the errors in later texts: see `ERRATA.md` of this package.
-/// - Accuracy: value and density are accurate to 2e-5 for exponents up to 1000, further than 1e-3 rad from the axis, where `kd` is
-///   a fiftieth or more. The specular lobe alone is accurate to `3e-6 + p (1.2e-7 + 2.4e-7 tan x - 4e-7 ln cos x)`,
+/// - Accuracy: value and density are accurate to 2e-5 for exponents from 2 to 1000, further than 1e-3 rad from the axis, where `kd` is
+///   a fiftieth or more. With exponents below 2 the density may be off by `6e-6 / cos theta_i`, where `theta_i + theta_o` is a right
+///   angle. The specular lobe alone is accurate to `3e-6 + p (1.2e-7 + 2.4e-7 tan x - 4e-7 ln cos x)`,
 ///   `x = |theta_i + theta_o|`: the slope of `cos^p x` times the rounding of an angle, and the rounding of cosine and exponent.
 ///
 /// ```

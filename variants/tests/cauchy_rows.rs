@@ -26,7 +26,6 @@ pub(crate) const PUBLISHED: Rows = Rows {
     // 8.6e-6
     reciprocity: 1.1e-5,
     // 1 + 3.9e-6
-    weight_bound: 1.0 + 6e-6,
     integral: [0.0; 3],
     seam: [0.0; 3],
     tail_sample: [0.0; 4],
@@ -54,7 +53,6 @@ pub(crate) const MATCHED: Rows = Rows {
     albedo_mesh: 2.9e-6,
     // 8.6e-6
     reciprocity: 1.2e-5,
-    weight_bound: 0.0,
     // 2.4e-6, 4.1e-6, 3.5e-7
     integral: [3.1e-6, 5.4e-6, 4.5e-7],
     // 1.8e-6, 2e-6, 6e-7

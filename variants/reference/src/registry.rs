@@ -273,7 +273,7 @@ fn hair_slack(shape: Shape, params: &HairParams, wo: [f64; 3], wi: [f64; 3]) -> 
     })
 }
 
-/// Formulas with an accuracy that holds for exponents up to 1000.
+/// Formulas with an accuracy that holds for exponents from 2 to 1000.
 impl Formulas for KajiyaKay {
     type Constants<T: Real> = KajiyaKayConstants<T>;
     type Point<T: Real> = KajiyaKayReference<T>;

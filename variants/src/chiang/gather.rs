@@ -407,7 +407,7 @@ pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(
         c += 1;
     }
     // A lobe that is about to appear by one channel has its share, where the root has no derivative.
-    let faint = squares.lt(Four::splat(1e-36));
+    let faint = sum.lt(Four::splat(1e-22));
     padded(Four::select(faint, sum, squares.sqrt()))
 }
 

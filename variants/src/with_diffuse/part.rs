@@ -46,6 +46,9 @@ lane_struct! {
 /// Largest energy, so that the sum of two does not overflow.
 const MOST_ENERGY: f32 = f32::MAX / 8.0;
 
+/// Smallest probability of the model or of the cylinder beside the other.
+const LEAST_SHARE: f32 = 1e-20;
+
 impl<L: Lanes> DiffuseMaterial<L> {
     /// Computes the constants of a share and a colour.
     #[inline]
@@ -72,6 +75,8 @@ impl<L: Lanes> DiffuseChoice<L> {
         // The larger one is a difference from 1, so that it is 1 without the other.
         let is_rare = cylinder.lt(model);
         let less = L::select(is_rare, cylinder, model) * scale * by;
+        // Rarer than any number but 0, which would always draw it, although its own lobes may be too faint to be drawn.
+        let less = L::keep(c(LEAST_SHARE).lt(less), less);
         let rest = L::keep(zero.lt(total), one - less);
         let (q, p) = (
             L::select(is_rare, rest, less),

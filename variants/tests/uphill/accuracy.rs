@@ -95,8 +95,8 @@ pub(crate) fn everyday(model: ModelId, at: &mut Coordinates<'_>) -> Point {
     if values.index("kd").is_some() {
         // A darker diffuse lobe leaves the far tail of the other alone.
         let kd: [f32; 3] = values.get("kd");
-        let exponent = narrow(at.scale(1.0, 1e3)).clamp(1.0, 1e3);
-        at.note("exponent up to 1000", &exponent);
+        let exponent = narrow(at.scale(1.0, 1e3)).clamp(2.0, 1e3);
+        at.note("exponent from 2 to 1000", &exponent);
         values = values
             .with("kd", &kd.map(|kd| kd.max(0.02)))
             .with("exponent", &[exponent]);

@@ -148,29 +148,36 @@ impl Side {
         let mut lobe_ends = lobes.alpha.into_iter().zip(lobes.beta);
         lobe_ends
             .all(|(alpha, beta)| {
-                side.error_at_end::<B>(lobes, sign, sign * alpha, beta) <= ACCEPTED
+                side.error_at_ends::<B>(lobes, sign, sign * alpha, beta) <= ACCEPTED
             })
             .then_some(side)
     }
 
     /// Returns the largest error where the range of a narrow lobe's inclinations ends at its centre. The albedo changes within two
     /// widths there, possibly between nodes.
-    fn error_at_end<B: Bell>(
+    fn error_at_ends<B: Bell>(
         &self,
         lobes: &HairLobes<f32>,
         sign: f32,
         tilt: f32,
         beta: f32,
     ) -> f32 {
-        // Twice the angle in `theta_h`, and the width.
-        let end = if tilt < 0.0 {
-            -2.0 * tilt
-        } else {
-            PI - 2.0 * tilt
-        };
-        if beta > NARROW || end - 8.0 * beta > FRAC_PI_2 {
+        if beta > NARROW {
             return 0.0;
         }
+        // Twice the angle in `theta_h`, and the width. An end behind the pole counts as long as the lobe reaches the pole.
+        let reach = 2.0 * beta * WIDTHS[7];
+        let mut largest = 0.0_f32;
+        for end in [-2.0 * tilt, PI - 2.0 * tilt] {
+            if end > -reach && end - 8.0 * beta <= FRAC_PI_2 {
+                largest = largest.max(self.error_about::<B>(lobes, sign, end, beta));
+            }
+        }
+        largest
+    }
+
+    /// Returns the largest error about an angle from the pole, at multiples of a lobe's width.
+    fn error_about<B: Bell>(&self, lobes: &HairLobes<f32>, sign: f32, end: f32, beta: f32) -> f32 {
         let x = WIDTHS.map(|widths| {
             let from_pole = (end + 2.0 * beta * widths).clamp(1e-6, FRAC_PI_2);
             libm::sqrtf(libm::tanf(0.5 * from_pole))

@@ -24,8 +24,6 @@ pub struct Rows {
     pub albedo_mesh: f64,
     /// Relative error of the reciprocity of S, wide and grid materials.
     pub reciprocity: f64,
-    /// Ratio of a weight to its proven bound, for the published sampler.
-    pub weight_bound: f64,
     /// Error of the integral of a lobe's density against 1: grid, narrow and wide materials; matched samplers.
     pub integral: [f64; 3],
     /// Errors of samples of TT and of glints next to the seam, against the reference at the direction they return: S, density, weight;
