@@ -1,7 +1,7 @@
 #!/bin/bash
 # Promise: the properties hold for other numbers than those of CI, and for four times as many, and the slow tests pass. By hand: every
-# round draws a seed, prints it, and runs the tests of kernels and variants with it, but records, and those included that CI leaves out for the
-# samplers that differ by constants, and a search uphill of a second per stated bound; then, in CI's size, the tests of the kernels
+# round draws a seed, prints it, and runs the tests of kernels and variants with it, those included that CI leaves out for the samplers
+# that differ by constants, but no records, and a search uphill of a second per stated bound; then, in CI's size, the tests of the kernels
 # compiled for x86-64-v3, the energy of 40,000 materials, and the tests that are ignored for their time, run once; then size and answers
 # of the C library with the feature `every-sampler`, the tests of models, derivatives, harness and renderer with it, those of the wheel and
 # Mitsuba's chi-square with it, models printed for Python in every framework, generated source of every model, and the hosts without an

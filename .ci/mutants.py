@@ -8,8 +8,8 @@
 
 cargo-mutants lists every mutant, and a seed draws 300 of them. A group has the mutants of one model, which are compiled for the portable
 lanes and this model alone, and tested by the tests of its package in their small size. The suites take longer: a package with all models
-for the portable lanes, `listed` with every sampler, and the test command of README.md. Answers are appended to target/mutants/record.csv as they come, so that a run that
-was stopped goes on. Groups and suites have clones of their own of the commit, so that two may run side by side.
+for the portable lanes, `listed` with every sampler, and the test command of README.md. Answers are appended to
+target/mutants/record.csv as they come, so that a run that was stopped goes on. Groups and suites have clones of their own of the commit, so that two may run side by side.
 """
 import collections
 import csv

@@ -25,7 +25,6 @@ pub(crate) const PUBLISHED: Rows = Rows {
     albedo_mesh: 4e-6,
     // 2.5e-5
     reciprocity: 3.2e-5,
-    // 1 + 8.3e-7
     integral: [0.0; 3],
     seam: [0.0; 3],
     tail_sample: [0.0; 4],

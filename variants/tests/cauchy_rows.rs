@@ -25,7 +25,6 @@ pub(crate) const PUBLISHED: Rows = Rows {
     albedo_mesh: 2.9e-6,
     // 8.6e-6
     reciprocity: 1.1e-5,
-    // 1 + 3.9e-6
     integral: [0.0; 3],
     seam: [0.0; 3],
     tail_sample: [0.0; 4],

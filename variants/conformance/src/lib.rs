@@ -123,10 +123,9 @@
 //! repetition costs no power: a density or a mean that is wrong stands out by twice as many standard errors.
 //!
 //! A bound that is a little above the largest error of some seeds falls with others. Values, densities and samples therefore have bounds by
-//! argument, [`Reference::error_bound`], which random points reach to .3 to .8. What has none (sums
-//! of lobes, distributions of angles, albedos, reciprocity of hair) may be twice as far off with another seed than CI's, as no seed was:
-//! extrapolated from the worst cases of 22 seeds, one such bound would fall in 5000 rounds as it is, and none in a billion when it is
-//! doubled.
+//! argument, [`Reference::error_bound`], which random points reach to .3 to .8. What has none (sums of lobes, distributions of angles,
+//! albedos, reciprocity of hair) may be twice as far off with another seed than CI's, as no seed was: extrapolated from the worst cases of
+//! 22 seeds, one such bound would fall in 5000 rounds as it is, and none in a billion when it is doubled.
 //!
 //! # Limits
 //!

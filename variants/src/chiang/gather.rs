@@ -165,6 +165,13 @@ pub(crate) fn apart<L: Lanes>(Pair(Pair(a, b), Pair(c, d)): Four<L>) -> [L; 4] {
     [a, b, c, d]
 }
 
+/// Returns the reciprocal where the mask is set, and 0 elsewhere. Neither divides by zero, so that derivatives are finite as well.
+#[inline(always)]
+fn inverse_where<L: Lanes>(mask: L::Mask, x: L) -> L {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    L::quotient(L::select(mask, one, zero), L::select(mask, x, one))
+}
+
 /// Multiplies two complex numbers.
 #[inline(always)]
 fn product<L: Lanes>([a, b]: [L; 2], [c, d]: [L; 2]) -> [L; 2] {
@@ -212,10 +219,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         ..
     } = Direction::normalized(hit.wo);
     let off_axis = c(1e-18).lt(cos_o);
-    let inv_cos_o = L::quotient(
-        L::select(off_axis, one, zero),
-        L::select(off_axis, cos_o, one),
-    );
+    let inv_cos_o = inverse_where(off_axis, cos_o);
     let azimuth_o = [
         L::select(off_axis, vector.y * inv_cos_o, one),
         vector.z * inv_cos_o,
@@ -392,21 +396,18 @@ pub(super) fn mean_shares<L: Lanes, C: Broadcast<L>>(prepared: &ChiangPrepared<C
 pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(
     prepared: &ChiangPrepared<C>,
 ) -> PerLobe<L> {
-    let (zero, one) = (L::splat(0.0), L::splat(1.0));
     let (mut sum, mut squares) = (Four::splat(0.0), Four::splat(0.0));
     let mut c = 0;
     while c < 3 {
         let lobes: Four<L> = channel(prepared, c);
         let [r, tt, trt, rest] = apart(lobes);
         let total = (r + tt) + (trt + rest);
-        let black = total.lt(L::splat(f32::MIN_POSITIVE));
-        let inverse = L::quotient(L::select(black, zero, one), L::select(black, one, total));
-        let share = lobes * same(inverse);
+        let share = lobes * same(inverse_where(L::splat(f32::MIN_POSITIVE).lt(total), total));
         sum = sum + share;
         squares = share.mul_add(share, squares);
         c += 1;
     }
-    // A lobe that is about to appear by one channel has its share, where the root has no derivative.
+    // A lobe that is about to appear by one channel has its share, where the root has no derivative. Below 1e-22 squares are denormal.
     let faint = sum.lt(Four::splat(1e-22));
     padded(Four::select(faint, sum, squares.sqrt()))
 }

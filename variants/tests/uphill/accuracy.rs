@@ -95,6 +95,7 @@ pub(crate) fn everyday(model: ModelId, at: &mut Coordinates<'_>) -> Point {
     if values.index("kd").is_some() {
         // A darker diffuse lobe leaves the far tail of the other alone.
         let kd: [f32; 3] = values.get("kd");
+        // Below 2 the density is conditioned worse: see the documentation of the model.
         let exponent = narrow(at.scale(1.0, 1e3)).clamp(2.0, 1e3);
         at.note("exponent from 2 to 1000", &exponent);
         values = values

@@ -94,8 +94,9 @@ impl<P: FamilyModel> Subject for Family<P> {
     }
 
     fn claims(&self) -> Claims {
+        let rows = P::ROWS.of_this_run();
         Claims {
-            reciprocal: Some(P::ROWS.of_this_run().reciprocity),
+            reciprocal: Some(rows.reciprocity),
             lanes: 5e-6,         // 3.3e-6
             sample_eval: 1.7e-6, // 1.3e-6
             weight: 1e-6,        // 4.8e-7
@@ -107,7 +108,7 @@ impl<P: FamilyModel> Subject for Family<P> {
             // Lobes of 0.01 rad off the sphere: 157 widths away a Cauchy bell's inverse is 157^2 * 0.01 steep, and four
             // roundings of 6e-8 are 6e-5 rad.
             direction: 6e-5, // 2.2e-5
-            albedo: P::ROWS.of_this_run().albedo_mesh,
+            albedo: rows.albedo_mesh,
             ..Claims::default()
         }
     }

@@ -80,7 +80,7 @@ fn w(wo: Vec3, wi: Vec3) -> f64 {
 fn worst_ratio(
     worst: &mut LargestError,
     limit: [f64; 3],
-    reference: &dyn Reference<f64>,
+    reference: &dyn Fn() -> Box<dyn Reference<f64>>,
     wo: Vec3,
     sample: &Sample,
     params: &HairParams,
@@ -101,7 +101,7 @@ fn worst_ratio(
         if w > 1e-4 && limit > 0.0 {
             let mut ratio = weight / (w * limit);
             if ratio > 1.0 {
-                let (value, pdf) = reference.error_bound(double(sample.wi)).unwrap();
+                let (value, pdf) = reference().error_bound(double(sample.wi)).unwrap();
                 let errors = value[c] / f64::from(sample.value[c]) + pdf / f64::from(sample.pdf);
                 ratio /= 1.0 + errors;
             }
@@ -140,7 +140,7 @@ pub fn weights_are_below_their_bound(tested: &Tested) {
             };
             let bsdf = material.prepare(wo).with_lobes(mask);
             let limit = bounds(tested, &params, factor, wo, mask);
-            let reference = oracle(&tested.formulas, &params, factor, wo);
+            let reference = || oracle(&tested.formulas, &params, factor, wo);
             let no_glints = !mask.contains(Lobe::GLINT) || params.desc().i_g == 0.0;
             for _ in 0..16 {
                 let xi = core::array::from_fn(|_| draws.xi3());
@@ -150,7 +150,7 @@ pub fn weights_are_below_their_bound(tested: &Tested) {
                         .filter_map(|lane| eight.lane(lane))
                         .chain(bsdf.sample(xi[0]));
                     for sample in all.filter(|s| no_glints || angles(wo, s.wi)[1] < FRAC_PI_2) {
-                        worst_ratio(&mut worst, limit, &*reference, wo, &sample, &params);
+                        worst_ratio(&mut worst, limit, &reference, wo, &sample, &params);
                         checked += 1;
                     }
                 }
