@@ -49,16 +49,22 @@ const fn cosine(k: usize) -> f32 {
     if k > 8 { -COS[16 - k] } else { COS[k] }
 }
 
-/// Nodes of a piece in `[-1, 1]`, descending: the roots of the Chebyshev polynomial of degree 8.
-const ROOTS: [f32; NODES] = {
-    let mut roots = [0.0; NODES];
+/// Returns the cosines of the eight multiples of `pi / 8` from `first * pi / 16`.
+const fn cosines(first: usize) -> [f32; NODES] {
+    let mut cosines = [0.0; NODES];
     let mut i = 0;
     while i < NODES {
-        roots[i] = cosine(2 * i + 1);
+        cosines[i] = cosine(2 * i + first);
         i += 1;
     }
-    roots
-};
+    cosines
+}
+
+/// Nodes of a piece in `[-1, 1]`, descending: the roots of the Chebyshev polynomial of degree 8.
+const ROOTS: [f32; NODES] = cosines(1);
+
+/// Its extremes, which are between the nodes, but for the lower end.
+const EXTREMES: [f32; NODES] = cosines(0);
 
 /// Returns `1 / albedo - 1`; for albedos below 1 its series about 1, which has no pole.
 fn excess(albedo: f32) -> f32 {
@@ -125,8 +131,7 @@ impl Side {
         };
         let mut middle = 1.0;
         for piece in 0..PIECES {
-            let v = (f32x8::new(ROOTS) + middle) * 0.125;
-            let albedo = albedos::<B>(lobes, sign, v * near / (1.0 + near - v));
+            let albedo = albedos::<B>(lobes, sign, side.warped(f32x8::new(ROOTS) + middle));
             for (channel, albedo) in albedo.iter().enumerate() {
                 let c = chebyshev(&albedo.as_array().map(excess));
                 let monomials = [
@@ -176,12 +181,22 @@ impl Side {
         largest
     }
 
-    /// Returns the largest error about an angle from the pole, at multiples of a lobe's width.
+    /// Returns the largest error about an angle from the pole: at multiples of a lobe's width, and between the nodes of its piece.
     fn error_about<B: Bell>(&self, lobes: &HairLobes<f32>, sign: f32, end: f32, beta: f32) -> f32 {
-        let x = WIDTHS.map(|widths| {
-            let from_pole = (end + 2.0 * beta * widths).clamp(1e-6, FRAC_PI_2);
+        let position = |from_pole: f32| {
+            let from_pole = from_pole.clamp(1e-6, FRAC_PI_2);
             libm::sqrtf(libm::tanf(0.5 * from_pole))
-        });
+        };
+        let about = WIDTHS.map(|widths| position(end + 2.0 * beta * widths));
+        let (piece, _) = self.piece(position(end));
+        let middle = (2 * piece + 1) as f32;
+        let between = self.warped(f32x8::new(EXTREMES) + middle);
+        self.error_at::<B>(lobes, sign, about)
+            .max(self.error_at::<B>(lobes, sign, between.to_array()))
+    }
+
+    /// Returns the largest error at eight positions.
+    fn error_at<B: Bell>(&self, lobes: &HairLobes<f32>, sign: f32, x: [f32; NODES]) -> f32 {
         let albedo = albedos::<B>(lobes, sign, f32x8::new(x));
         let mut largest = 0.0_f32;
         for (channel, albedo) in albedo.iter().enumerate() {
@@ -193,13 +208,25 @@ impl Side {
         largest
     }
 
-    /// Evaluates the fit of `1 / albedo - 1` of a channel.
-    fn at(&self, channel: usize, x: f32) -> f32 {
+    /// Returns the positions that the warp takes to these, given in eighths.
+    fn warped(&self, eighths: f32x8) -> f32x8 {
+        let v = eighths * 0.125;
+        v * self.near / (1.0 + self.near - v)
+    }
+
+    /// Returns the piece of a position, and the argument of its polynomials in `[-1, 1]`.
+    fn piece(&self, x: f32) -> (usize, f32) {
         let v = f32::quotient((1.0 + self.near) * x, x + self.near);
         let (mut piece, mut t) = (0, 8.0 * v - 1.0);
         while t > 1.0 && piece < PIECES - 1 {
             (piece, t) = (piece + 1, t - 2.0);
         }
+        (piece, t)
+    }
+
+    /// Evaluates the fit of `1 / albedo - 1` of a channel.
+    fn at(&self, channel: usize, x: f32) -> f32 {
+        let (piece, t) = self.piece(x);
         self.coefficients
             .iter()
             .rev()
