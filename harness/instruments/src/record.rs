@@ -11,6 +11,13 @@ pub fn is_asked() -> bool {
     std::env::var("HAIRIS_RECORD").is_ok_and(|word| word == "write")
 }
 
+/// Returns the numbers that follow `key` in the first line of a record that begins with it: all fields that are numbers, in their order.
+#[must_use]
+pub fn numbers(record: &str, key: &str) -> Option<Vec<f64>> {
+    let fields = record.lines().find_map(|line| line.strip_prefix(key))?;
+    Some(fields.split(',').filter_map(|x| x.parse().ok()).collect())
+}
+
 /// Writes a record: the processor, the commit, the date, what the rows are `about`, the names of the columns, and the rows.
 ///
 /// # Errors

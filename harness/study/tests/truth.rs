@@ -154,9 +154,8 @@ fn record_of_the_distance_from_physics() {
             // The noise of few paths adds to every distance, but at most itself.
             if written.is_empty() && model != "another seed" {
                 let key = format!("\"{name}\",{model},");
-                let line = record.lines().find_map(|line| line.strip_prefix(&key));
-                let before = line.and_then(|line| line.split(',').next()?.parse().ok());
-                assert_near(difference.total, before.expect("a row"), noise, &key);
+                let before = record::numbers(&record, &key).expect("a row");
+                assert_near(difference.total, before[0], noise, &key);
             }
         };
         row("another seed", &other, &parameters(&fiber));
