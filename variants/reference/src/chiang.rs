@@ -46,6 +46,8 @@ pub struct ChiangReference<T> {
     phi_o: T,
     cones: PerLobe<Cone<T>>,
     logistics: PerLobe<Logistic<T>>,
+    /// Relative errors that widths by `wo` may have in the kernels, along the fibre and about it.
+    width_errors: PerLobe<[T; 2]>,
     /// Azimuth of each lobe's centre from that of `wo`.
     centres: PerLobe<T>,
     fresnel: T,
@@ -119,11 +121,15 @@ impl<T: Real> ChiangConstants<T> {
         let h = h.max(-one).min(one);
 
         let (mut variances, mut logistics) = (self.variances, self.logistics);
+        let mut width_errors = PerLobe::default();
         if let Some(medulla) = &self.medulla {
-            let [[v_tt, v_trt], [s_tt, s_trt]] = medulla.widths(cos_theta_o.max(number(1e-18)));
+            let [along, about] = medulla.widths(cos_theta_o.max(number(1e-18)));
+            let [v_tt, v_trt] = along.map(|root| root.width * root.width);
             variances = four([variances[Lobe::R], v_tt, v_trt, v_trt]);
-            let [s_tt, s_trt] = [s_tt, s_trt].map(Logistic::new);
+            let [s_tt, s_trt] = about.map(|scale| Logistic::new(scale.width));
             logistics = PerLobe::padded([logistics[Lobe::R], s_tt], s_trt);
+            let [tt, trt] = [0, 1].map(|lobe| [along[lobe].error, about[lobe].error]);
+            width_errors = four([[zero; 2], tt, trt, trt]);
         }
 
         // Cones about theta' = theta_o - shift, folded back beyond a pole.
@@ -162,6 +168,7 @@ impl<T: Real> ChiangConstants<T> {
             phi_o,
             cones: PerLobe::padded([cone(Lobe::R), cone(Lobe::TT), cone(Lobe::TRT)], cone(REST)),
             logistics,
+            width_errors,
             centres: four([centre(0.0), centre(1.0), centre(2.0), centre(3.0)]),
             fresnel,
             path_length,
@@ -308,18 +315,25 @@ impl<T: Real> Reference<T> for ChiangReference<T> {
 
     /// Returns, for each lobe, the error of the arithmetic, and the rounding of angles times the steepness of M and N. Along the fibre it is
     /// 2.4e-7 rad: up to an exponent of 12 M changes by less than `5 / sqrt(v)`, and beyond the error grows as the exponent does. About
-    /// the fibre it grows with the azimuth of the lobe's centre, and N changes by less than `1 / s`.
+    /// the fibre it grows with the azimuth of the lobe's centre, and N changes by less than `1 / s`. Errors of widths by `wo` count as often
+    /// as `d ln M / d ln v <= exponent + 1` and `d ln N / d ln s <= |x| / s + 1` say.
     fn lobe_errors(&self, wi: [T; 3]) -> Option<PerLobe<[T; 2]>> {
         let [sin, cos] = inclination(wi);
+        let phi = wi[2].atan2(wi[1]) - self.phi_o;
         let number = T::from_f64;
         Some(four(Lobe::FOUR.map(|lobe| {
             let [exponent, width] = self.cones[lobe].exponent(sin, cos);
             let mut errors = number(6.5e-6) + number(1.2e-6) / width;
+            let mut from_centre = number(0.0);
             if lobe != REST {
-                let azimuth = number(5e-7 * (1 + lobe.index()) as f64);
-                errors = errors + azimuth / self.logistics[lobe].scale();
+                let scale = self.logistics[lobe].scale();
+                errors = errors + number(5e-7 * (1 + lobe.index()) as f64) / scale;
+                from_centre = wrap(phi - self.centres[lobe]).abs() / scale;
             }
-            [errors * (exponent / number(12.0)).max(number(1.0)); 2]
+            let [along, about] = self.width_errors[lobe];
+            let of_widths =
+                (along + along) * (exponent + number(1.0)) + about * (from_centre + number(1.0));
+            [errors * (exponent / number(12.0)).max(number(1.0)) + of_widths; 2]
         })))
     }
 

@@ -108,14 +108,14 @@ impl<T: Real> ChiangFormulas<T> for ChiangDesc<T> {
 
     #[inline]
     fn variances(&self) -> PerLobe<T> {
-        let root = along(self.beta_m);
+        let [root, _] = along(self.beta_m);
         let [r, tt, trt] = self.width_m.map(|width| width * root * (width * root));
         PerLobe::padded([r, tt], trt)
     }
 
     #[inline]
     fn scales(&self) -> PerLobe<T> {
-        let scale = about(self.beta_n);
+        let [scale, _] = about(self.beta_n);
         let [r, tt, trt] = self.width_n.map(|width| width * scale);
         PerLobe::padded([r, tt], trt)
     }
@@ -132,24 +132,39 @@ impl<T: Real> ChiangFormulas<T> for ChiangDesc<T> {
     }
 }
 
-/// Computes the longitudinal width of a roughness.
-fn along<T: Real>(m: T) -> T {
-    let number = T::from_f64;
-    number(0.726) * m + number(0.812) * m * m + number(3.7) * m.powf(number(20.0))
+/// Computes the longitudinal width of a roughness, and `d ln width / d ln m`.
+fn along<T: Real>(m: T) -> [T; 2] {
+    width(m, [0.726, 0.812, 3.7], 20.0)
 }
 
-/// Computes the scale of the azimuthal logistic of a roughness, rad.
-fn about<T: Real>(n: T) -> T {
-    let number = T::from_f64;
-    let sum = number(0.265) * n + number(1.194) * n * n + number(5.372) * n.powf(number(22.0));
-    (T::PI / number(8.0)).sqrt() * sum
+/// Computes the scale of the azimuthal logistic of a roughness, rad, and `d ln scale / d ln n`.
+fn about<T: Real>(n: T) -> [T; 2] {
+    let [scale, steepness] = width(n, [0.265, 1.194, 5.372], 22.0);
+    [(T::PI / T::from_f64(8.0)).sqrt() * scale, steepness]
+}
+
+/// Computes `a x + b x^2 + c x^power` and its steepness.
+fn width<T: Real>(x: T, terms: [f64; 3], power: f64) -> [T; 2] {
+    let power = T::from_f64(power);
+    let [a, b, c] = terms.map(T::from_f64);
+    let (first, second, last) = (a * x, b * x * x, c * x.powf(power));
+    let sum = first + second + last;
+    [sum, (first + second + second + power * last) / sum]
+}
+
+/// Width of a lobe along the fibre or about it, and the relative error that it may have in the kernels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Widened<T> {
+    pub(super) width: T,
+    pub(super) error: T,
 }
 
 /// Medulla of OSL's fibre, which widens TT, TRT and the rest by the share of the light that it has scattered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Medulla<T> {
-    /// Optical depth of a passage across the fibre.
+    /// Optical depth of a passage across the fibre, and the relative error that it may have in the kernels.
     depth: T,
+    depth_error: T,
     /// Roughnesses of TT and TRT along the fibre, and about it.
     along: [T; 2],
     about: [T; 2],
@@ -157,40 +172,64 @@ pub(super) struct Medulla<T> {
 
 impl<T: Real> Medulla<T> {
     pub(super) fn new(parameters: &ChiangDesc<T>, scattering: T) -> Self {
-        let number = T::from_f64;
+        let (number, one) = (T::from_f64, T::from_f64(1.0));
         let [_, tt, trt] = parameters.width_m;
-        let width = along(parameters.beta_m);
+        let [width, _] = along(parameters.beta_m);
         let [_, tt_about, trt_about] = parameters.width_n;
-        let scale = about(parameters.beta_n);
+        let [scale, _] = about(parameters.beta_n);
+        let scattered = (scattering * scattering).min(number(0.99));
+        let depth = -(-scattered).ln_1p();
         Self {
-            depth: -(-(scattering * scattering).min(number(0.99))).ln_1p(),
+            depth,
+            // Of the logarithm and of a quotient by the cosine, and the rounding of its argument: `d ln depth / d ln scattered` is less than
+            // the second factor.
+            depth_error: number(4e-7) + number(6e-8) / (one - scattered),
             along: [tt / number(0.5), trt / number(2.0)].map(|by| inverse(along, by * width)),
             about: [tt_about, trt_about].map(|by| inverse(about, by * scale)),
         }
     }
 
-    /// Computes the variances and the scales of TT and TRT for a direction with this cosine of its inclination.
-    pub(super) fn widths(&self, cos_theta_o: T) -> [[T; 2]; 2] {
+    /// Computes the widths of TT and TRT along the fibre, and about it, for a direction with this cosine of its inclination.
+    pub(super) fn widths(&self, cos_theta_o: T) -> [[Widened<T>; 2]; 2] {
         let (number, one) = (T::from_f64, T::from_f64(1.0));
-        let grown = |roughness: T, passages: f64| {
-            let scattered = -(-number(passages) * self.depth / cos_theta_o).exp_m1();
-            (roughness + scattered).min(roughness.max(one))
+        let widened = |of: fn(T) -> [T; 2], roughness: T, passages: f64| {
+            let depth = number(passages) * self.depth / cos_theta_o;
+            let scattered = -(-depth).exp_m1();
+            let (grown, most) = (roughness + scattered, roughness.max(one));
+            // Six roundings of the share of the light, and that of its depth. A roughness beyond the end has no error.
+            let off = number(3.6e-7) * scattered + self.depth_error * depth * (one - scattered);
+            let off = if grown < most * number(1.0 + 1e-6) {
+                off / grown
+            } else {
+                T::default()
+            };
+            let [width, steepness] = of(grown.min(most));
+            Widened {
+                width,
+                // The roughness and its sum round once each, powers as often as half their steepness says, and the width four times.
+                error: steepness * (off + number(1.8e-7)) + number(2.4e-7),
+            }
         };
-        let [tt, trt] = self.along;
-        let roots = [
-            number(0.5) * along(grown(tt, 1.0)),
-            number(2.0) * along(grown(trt, 2.0)),
-        ];
-        let [tt, trt] = self.about;
+        let ([tt, trt], [tt_about, trt_about]) = (self.along, self.about);
+        let times = |by: f64, widened: Widened<T>| Widened {
+            width: number(by) * widened.width,
+            ..widened
+        };
         [
-            roots.map(|root| root * root),
-            [about(grown(tt, 1.0)), about(grown(trt, 2.0))],
+            [
+                times(0.5, widened(along, tt, 1.0)),
+                times(2.0, widened(along, trt, 2.0)),
+            ],
+            [
+                widened(about, tt_about, 1.0),
+                widened(about, trt_about, 2.0),
+            ],
         ]
     }
 }
 
 /// Computes the roughness of a width by bisection.
-fn inverse<T: Real>(of: impl Fn(T) -> T, width: T) -> T {
+fn inverse<T: Real>(of: fn(T) -> [T; 2], width: T) -> T {
     let half = T::from_f64(0.5);
     let (mut least, mut most) = (T::default(), T::from_f64(2.0));
     loop {
@@ -198,7 +237,7 @@ fn inverse<T: Real>(of: impl Fn(T) -> T, width: T) -> T {
         if middle <= least || middle >= most {
             return middle;
         }
-        if of(middle) < width {
+        if of(middle)[0] < width {
             least = middle;
         } else {
             most = middle;

@@ -74,7 +74,7 @@ fn exact_chiang<T: Real>(params: &ChiangParams, exact: &Values<T>) -> ChiangDesc
     }
 }
 
-/// Formulas with the accuracy of the fibre: that of widths by `wo` adds 2e-6 of an exponent.
+/// Formulas with the accuracy of the fibre. Errors of widths by `wo` are in the errors of the lobes.
 impl Formulas for ScatteringChiang {
     type Constants<T: Real> = ChiangConstants<T>;
     type Point<T: Real> = ChiangReference<T>;
