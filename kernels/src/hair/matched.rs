@@ -48,9 +48,8 @@ use crate::simd::{Broadcast, Choice, Lanes, Scalar, Vec3x};
 ///   `hairis-reference`); the mean of a weight's RGB is `W / h` times that sum. By channel, the largest energy over its lobe's
 ///   probability replaces the sum.
 /// - Accuracy: the density contains the bells and is as exact as S, to 2e-4 relative (Gaussian) and 3e-5 (Cauchy). So are the values that
-///   a sample reports, for the direction it returns, where S is above 1e-20: to 6e-5 and 1e-5 at random numbers and at their ends (test
-///   `tails`). These bounds are for widths of a degree and more, further than 1e-3 rad from the fibre's axis; errors grow as
-///   widths shrink. A Gaussian lobe below `2^-115` of its peak has neither value nor density, and a lobe whose energy is below 1e-36
+///   a sample reports, for the direction it returns, where S is above 1e-20. These bounds are for widths of a degree and more, further
+///   than 1e-3 rad from the fibre's axis; errors grow as widths shrink. A Gaussian lobe below `2^-115` of its peak has neither value nor density, and a lobe whose energy is below 1e-36
 ///   of the largest is not sampled.
 /// - Domain: `BANDS` is 5, 9 or 25. By channel, a channel below 1e-18 of the brightest is ignored.
 /// - Source: ours; it replaces section 3.2 of Ou et al. 2012.

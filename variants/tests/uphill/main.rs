@@ -118,7 +118,7 @@ impl Bound {
 }
 
 /// Returns the bounds of every model and sampler, but of samplers that differ from one of these by constants. A model with a diffuse part
-/// or with scattering has the bounds of the model alone.
+/// or with scattering is not searched.
 fn bounds() -> Vec<Bound> {
     let words = ["published", "matched", "mean"];
     let is_one = |model: &&ModelId| model.choice().is_none_or(|(_, word)| words.contains(&word));
