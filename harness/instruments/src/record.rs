@@ -11,11 +11,20 @@ pub fn is_asked() -> bool {
     std::env::var("HAIRIS_RECORD").is_ok_and(|word| word == "write")
 }
 
-/// Returns the numbers that follow `key` in the first line of a record that begins with it: all fields that are numbers, in their order.
+/// Returns the first numbers after `key` in the first line of a record that begins with it.
+///
+/// # Panics
+///
+/// Panics if the record has no such line, or if it has fewer numbers there.
 #[must_use]
-pub fn numbers(record: &str, key: &str) -> Option<Vec<f64>> {
-    let fields = record.lines().find_map(|line| line.strip_prefix(key))?;
-    Some(fields.split(',').filter_map(|x| x.parse().ok()).collect())
+pub fn numbers<const N: usize>(record: &str, key: &str) -> [f64; N] {
+    let mut lines = record.lines();
+    let row = lines.find_map(|line| line.strip_prefix(key));
+    let mut fields = row.unwrap_or_default().split(',');
+    core::array::from_fn(|_| {
+        let number = fields.next().and_then(|field| field.parse().ok());
+        number.unwrap_or_else(|| panic!("the record must have {N} numbers after {key}: {row:?}"))
+    })
 }
 
 /// Writes a record: the processor, the commit, the date, what the rows are `about`, the names of the columns, and the rows.

@@ -47,7 +47,7 @@ fn means_are_near_those_of_paths() {
     }
 }
 
-/// All scenes, models and colours have the means of the record, within five of its standard errors. With `HAIRIS_RECORD=write`, writes it.
+/// All scenes, models and colours have the means of the record, within five standard errors of a difference. With `HAIRIS_RECORD=write`, writes it.
 #[test]
 #[ignore = "slow: ten minutes on two cores"]
 fn record_of_dual_scattering() {
@@ -71,10 +71,10 @@ fn record_of_dual_scattering() {
                 println!("{row}");
                 rows.push(row);
                 if !record::is_asked() {
-                    let before = record::numbers(&recorded, &key).expect("a row");
+                    let [before @ .., noise] = record::numbers::<4>(&recorded, &key);
                     for (mean, was) in pair.means.iter().zip(&before) {
                         let off = (mean - was).abs();
-                        assert!(off <= 5.0 * before[3], "{key} has {before:?} in the record");
+                        assert!(off <= 7.0 * noise, "{key} has {before:?} in the record");
                     }
                 }
             }
