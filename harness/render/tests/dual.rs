@@ -47,7 +47,8 @@ fn means_are_near_those_of_paths() {
     }
 }
 
-/// All scenes, models and colours have the means of the record, within five standard errors of a difference. With `HAIRIS_RECORD=write`, writes it.
+/// All scenes, models and colours have the means of the record, within five standard errors of a difference. With `HAIRIS_RECORD=write`,
+/// writes it.
 #[test]
 #[ignore = "slow: ten minutes on two cores"]
 fn record_of_dual_scattering() {

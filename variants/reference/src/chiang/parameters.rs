@@ -181,8 +181,8 @@ impl<T: Real> Medulla<T> {
         let depth = -(-scattered).ln_1p();
         Self {
             depth,
-            // Errors of the logarithm and of the quotient by the cosine, and the rounding of its argument: `d ln depth / d ln scattered` is less than
-            // the second factor.
+            // Errors of the logarithm and of the quotient by the cosine, and the rounding of its argument: `d ln depth / d ln scattered` is
+            // less than the second factor.
             depth_error: number(4e-7) + number(6e-8) / (one - scattered),
             along: [tt / number(0.5), trt / number(2.0)].map(|by| inverse(along, by * width)),
             about: [tt_about, trt_about].map(|by| inverse(about, by * scale)),
